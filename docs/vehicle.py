@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""An ideal vehicle for a chip that plans, in a world with a straight line; written from protocol.md.
+"""An ideal vehicle for a chip that plans, in a world with a straight line; by protocol.md.
 
 It keeps what it has done, so a chip that restarts goes on where it was.
 """
@@ -12,13 +12,12 @@ import select
 import socket
 import sys
 
-from wire import (ENVELOPES, METRE, MOTION, PROTOCOL, TO_CHIP, TO_VEHICLE, envelope, frame, unframe,
-                  write)
+from wire import ENVELOPES, METRE, PROTOCOL, TO_CHIP, TO_VEHICLE, envelope, frame, unframe, write
 
 
 def setup(args):
     """The paper's example: a square of 20 m, four given labels, a unicycle."""
-    site = lambda x, z: {"x": x * METRE, "z": z * METRE}
+    site = lambda x, z: [x * METRE, z * METRE]
     odds = round((math.log(args.p) - math.log1p(-args.p)) * 2**32) if args.p < 1 else 1000 << 32
     noise = {"reliability": odds, "trusted_radius": METRE // 2 if args.p < 1 else 0, "tolerance": 0}
     looks_ahead, taken = args.algorithm == "lookahead", args.steps * args.readings
@@ -27,36 +26,35 @@ def setup(args):
     is_fine = looks_ahead or args.algorithm == "track"
     if args.algorithm == "track":
         taken = 0  # it stores none
-    front = {"front": {"radius_mm": args.radius * 1000, "speed_um": 0}, "noise": noise}
-    doubt = {"noise": noise, "prior": ("Area", None)}
+    front = {"front": [args.radius * 1000, 0], "noise": noise}
     return {
         "protocol": PROTOCOL,
         "algorithm": {
-            "cfc": ("Cfc", None),
-            "scc": ("Scc", {**doubt, "policy": ("MixtureOfOwn", None)}),
-            "lookahead": ("Lookahead", {"evaluations": 512, "goal": None,
-                                        "noise": doubt if args.p < 1 else None,
-                                        "sight": {"far": None, "least": 0, "readings": args.readings}}),
-            "track": ("Watch", {**front, "stretch_mm": args.watch * 1000}) if args.watch
-                     else ("Track", {**front, "ends": False}),
+            "cfc": "Cfc",
+            "scc": {"Scc": {"noise": noise, "prior": "Area", "policy": "MixtureOfOwn"}},
+            "lookahead": {"Lookahead": {"evaluations": 512, "goal": None,
+                                        "noise": [noise, "Area"] if args.p < 1 else None,
+                                        "sight": {"far": None, "least": 0, "readings": args.readings}}},
+            "track": {"Watch": {**front, "stretch": args.watch * 1000}} if args.watch
+                     else {"Track": {**front, "ends": False}},
         }[args.algorithm],
         "config": {
-            "area": {"min": site(0, 0), "max": site(20, 20)},
-            "varrho": 2_000 if looks_ahead else 100_000,
-            "crossing": ("Unrestricted", None),
-            "following": ("Unrestricted" if args.algorithm == "scc" else "AlongBisector", None),
+            "area": [site(0, 0), site(20, 20)],
+            "weight": 2_000 if looks_ahead else 100_000,
+            "crossing": "Unrestricted",
+            "following": "Unrestricted" if args.algorithm == "scc" else "AlongBisector",
             "tolerance": 0,
         },
         "keep_outs": None,
-        "vehicle": ("Unicycle", {"turn_step_urad": 1 if is_fine else 10_000,
-                                 "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}),
+        "vehicle": {"Unicycle": {"turn_step_urad": 1 if is_fine else 10_000,
+                                 "sharpest": 1 << 30, "speeds": 21, "speed_step_mm": 100}},
         "capacity": {"samples": 4 + taken,
                      "hypotheses": 1 + taken + taken * (taken - 1) // 2 if args.p < 1 else 1},
         "steps": args.steps,
         "most_labels": None,
         "start": {"site": site(2, 1), "heading": 0},
-        "labels": ("Vehicle", None),
-        "given": [{"site": site(x, z), "label": (label, None)} for x, z, label in (
+        "labels": "Vehicle",
+        "given": [{"site": site(x, z), "label": label} for x, z, label in (
             (2, 1, "Negative"), (2, 8, "Positive"), (18, 16, "Positive"), (18, 5, "Negative"))],
     }
 
@@ -72,27 +70,27 @@ class Vehicle:
 
     def read(self, site):
         slope, intercept = self.args.line
-        above = site["z"] / METRE - (slope * site["x"] / METRE + intercept)
+        above = site[1] / METRE - (slope * site[0] / METRE + intercept)
         self.labels += 1
         is_wrong = self.labels in self.args.wrong
-        return ("Side", ("Positive" if (above > 0) != is_wrong else "Negative", None))
+        return {"Side": "Positive" if (above > 0) != is_wrong else "Negative"}
 
     def act(self, request, said):
         if request == "Ready":
             self.begun, self.asked = self.begun + 1, 0
             if self.begun > 1:
                 print(f"the chip has restarted: it is told again what was done in {len(self.made)} steps")
-            return "Noted", None
+            return "Noted"
         if request == "Declined":
             sys.exit(f"the chip declines: {said}")
         if request == "Front" and self.asked and not self.told:
             self.fronts[self.asked - 1] = said
-            return "Noted", None
+            return "Noted"
         if request in ("Move", "End") and self.asked:
             if said["last"] != self.made[self.asked - 1][3]:
                 sys.exit(f"step {self.asked}: the chip took in {said['last']}, which was not read")
         if request == "Move":
-            motion = write(MOTION, said["motion"])
+            motion = write("Motion", said["motion"])
             if self.asked == len(self.made):
                 self.make(motion, said["motion"])
             self.asked, self.told = self.asked + 1, 0
@@ -105,7 +103,7 @@ class Vehicle:
             return self.goes_on()
         if request == "End":
             self.end = said
-            return "Noted", None
+            return "Noted"
         sys.exit(f"{request}: the chip asks for what this mission has not")
 
     def goes_on(self):
@@ -113,23 +111,23 @@ class Vehicle:
         _, passed, pose, reading = self.made[self.asked - 1]
         if self.told < len(passed):
             self.told += 1
-            return "OnTheWay", passed[self.told - 1]
+            return {"OnTheWay": passed[self.told - 1]}
         self.told = 0
-        return "Arrived", {"pose": pose, "reading": reading}
+        return {"Arrived": {"pose": pose, "reading": reading}}
 
     def make(self, motion, said):
         pose, site, begin = said["target"], said["target"]["site"], self.site
         passed = []
         for k in range(1, self.args.readings if site != begin else 1):
-            between = lambda a, b: math.floor(a + (b - a) * (k / self.args.readings) + 0.5)
-            at = {axis: between(begin[axis], site[axis]) for axis in ("x", "z")}
+            at = [math.floor(a + (b - a) * (k / self.args.readings) + 0.5) for a, b in zip(begin, site)]
             passed.append({"site": at, "reading": self.read(at)})
         reading = self.read(site) if said["wants_label"] else None
         self.site = site
         self.made.append((motion, passed, pose, reading))
-        label = {"Positive": "+1", "Negative": "-1"}[reading[1][0]] if reading else "none"
-        print(f"step {len(self.made)}: action {said['action']} to x {site['x'] / METRE:.4f}, "
-              f"z {site['z'] / METRE:.4f} ({site['x']}, {site['z']}, {pose['heading']}), label {label}")
+        label = {"Positive": "+1", "Negative": "-1"}[reading["Side"]] if reading else "none"
+        x, z = site
+        print(f"step {len(self.made)}: action {said['action']} to x {x / METRE:.4f}, "
+              f"z {z / METRE:.4f} ({x}, {z}, {pose['heading']}), label {label}")
 
 
 class Responder:
@@ -142,24 +140,24 @@ class Responder:
         said, _ = envelope(content, {TO_VEHICLE: ENVELOPES[TO_VEHICLE]})
         if not said:
             return None
-        session, number, (request, what) = said["session"], said["number"], said["message"]
-        answer = lambda session, name, value: frame(write(ENVELOPES[TO_CHIP], {
-            "way": TO_CHIP, "session": session, "number": number, "message": (name, value)}))
+        session, number, [(request, what)] = said["session"], said["number"], said["message"].items()
+        answer = lambda session, reply: frame(write(ENVELOPES[TO_CHIP], {
+            "way": TO_CHIP, "session": session, "number": number, "message": reply}))
         on_offer = (self.session + 1) % 2**32 or 1
         if request == "Hello":
             if what["protocol"] != PROTOCOL:
                 sys.exit(f"the chip speaks protocol {what['protocol']}, this vehicle {PROTOCOL}")
             self.vehicle.is_dismissed = self.vehicle.end is not None
-            return None if self.vehicle.end else answer(on_offer, "Setup", self.vehicle.setup)
+            return None if self.vehicle.end else answer(on_offer, {"Setup": self.vehicle.setup})
         if session == on_offer:
             self.session, self.last = session, None
         elif session != self.session or self.last is None:
-            return answer(session, "Stale", None)
+            return answer(session, "Stale")
         if self.last is not None and number < self.last:
-            return answer(session, "Stale", None)
+            return answer(session, "Stale")
         if number != self.last:
-            self.last, self.reply = number, answer(session, "Busy", None)
-            self.reply = answer(session, *self.vehicle.act(request, what))
+            self.last, self.reply = number, answer(session, "Busy")
+            self.reply = answer(session, self.vehicle.act(request, what))
         return self.reply
 
 
@@ -197,14 +195,14 @@ def fly(port, vehicle):
 
 
 def tell(end):
-    print(f"ended: {end['reason'][0]}" + (f", {end['reason'][1]}" if end["reason"][1] else ""))
+    print(f"ended: {end['reason']}")
     for name, line in end["estimates"].items():
         if line:
-            x, z = line["along"]["x"], line["along"]["z"]
-            c, s, m, b = x / math.hypot(x, z), z / math.hypot(x, z), line["slope"], line["intercept"]
-            x, z = line["about"]["x"] / METRE - b * s, line["about"]["z"] / METRE + b * c
+            about, (x, z), (m, b) = line
+            c, s = x / math.hypot(x, z), z / math.hypot(x, z)
+            exact = [*about, x, z, m, b]
+            x, z = about[0] / METRE - b * s, about[1] / METRE + b * c
             slope = (s + m * c) / (c - m * s)
-            exact = [*line["about"].values(), *line["along"].values(), m, b]
             print(f"{name}: z = {slope:.4f} x + {z - slope * x:.4f}, exactly", *exact)
 
 
@@ -212,8 +210,8 @@ def tell_map(fronts):
     """The map of a front: where it was known best after each step."""
     for step, front in fronts.items():
         if waist := front["waist"]:
-            x, z = waist["site"]["x"] / METRE, waist["site"]["z"] / METRE
-            exact = [*waist["site"].values(), *list(waist.values())[1:]]
+            x, z = waist["site"][0] / METRE, waist["site"][1] / METRE
+            exact = [*waist["site"], *list(waist.values())[1:]]
             print(f"vertex {step + 1}: x {x:.4f}, z {z:.4f}, deviation {waist['deviation']:.3f}, exactly", *exact)
 
 

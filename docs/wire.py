@@ -1,55 +1,86 @@
 #!/usr/bin/env python3
-"""What goes over the wire: values, messages, frames; written from protocol.md beside this file.
+"""What goes over the wire: values, messages, frames. It reads the types from protocol.schema beside this file.
 
-    wire.py --vectors protocol.md      reads and writes the examples of that page
-    wire.py --split "00 0c 21 ..."     tells a frame part by part
+    wire.py --vectors              decodes the vectors of protocol.vectors, and encodes them again
+    wire.py --split "00 0c 21 ..." shows a frame part by part
 """
 
 import argparse
-import re
+import json
+import pathlib
 import struct
 import sys
 import zlib
 
 PROTOCOL = 11
 METRE = 1 << 16
-
-
-# Values. A type is the name of a number, a dict of fields, or one of these three.
-
-
-class Optional:
-    def __init__(self, of):
-        self.of = of
-
-
-class List:
-    def __init__(self, of, most):
-        self.of, self.most = of, most
-
-
-class Choice:
-    def __init__(self, **variants):
-        self.variants = list(variants.items())
+TO_VEHICLE, TO_CHIP = ord("?"), ord("!")
+HERE = pathlib.Path(__file__).parent
+BITS = {"u8": 8, "u16": 16, "u32": 32, "i32": 32, "i64": 64}
 
 
 class Refused(Exception):
     pass
 
 
-BITS = {"u16": 16, "u32": 32, "i32": 32, "i64": 64}
+# A type is a name, a dict of fields, or one of these: ["choice", (variant, type or None), ...], ["tuple", type, ...],
+# ["optional", type], ["list", most, type].
+
+
+def parsed(words):
+    word = words.pop(0)
+    if word == "[":
+        parts = ["tuple"]
+        while words[0] != "]":
+            parts.append(parsed(words))
+        words.pop(0)
+        return parts
+    if word == "optional":
+        return [word, parsed(words)]
+    if word == "list":
+        return [word, int(words.pop(0)), parsed(words)]
+    return word
+
+
+def schema(text):
+    """Types by their names."""
+    types = {}
+    for line in text.split("\n"):
+        words = line.split("#")[0].replace("[", " [ ").replace("]", " ] ").split()
+        if not words:
+            continue
+        if line[0] != " ":
+            kind = {"struct": {}, "choice": ["choice"]}.get(words[1])
+            inside = types[words[0]] = parsed(words[2:]) if kind is None else kind
+        elif isinstance(inside, dict):
+            inside[words[0]] = parsed(words[1:])
+        else:
+            inside.append((words[1], parsed(words[2:]) if words[2:] else None))
+    return types
+
+
+TYPES = schema((HERE / "protocol.schema").read_text())
+ENVELOPES = {TO_VEHICLE: TYPES["Envelope"], TO_CHIP: {**TYPES["Envelope"], "message": "Reply"}}
+
+
+# Values, in the form of JSON. A choice is the name of its variant, or {name: what it has}.
 
 
 def write(kind, value):
+    if isinstance(kind, str) and kind in TYPES:
+        return write(TYPES[kind], value)
     if isinstance(kind, dict):
         return b"".join(write(of, value[name]) for name, of in kind.items())
-    if isinstance(kind, Optional):
-        return b"\0" if value is None else b"\1" + write(kind.of, value)
-    if isinstance(kind, List):
-        return write("u32", len(value)) + b"".join(write(kind.of, each) for each in value)
-    if isinstance(kind, Choice):
-        index, of = next((i, of) for i, (name, of) in enumerate(kind.variants) if name == value[0])
-        return bytes([index]) + (write(of, value[1]) if of else b"")
+    if kind[0] == "choice":
+        variant = value if isinstance(value, str) else [*value][0]
+        index, of = next((i, of) for i, (it, of) in enumerate(kind[1:]) if it == variant)
+        return bytes([index]) + (write(of, value[variant]) if of else b"")
+    if kind[0] == "optional":
+        return b"\0" if value is None else b"\1" + write(kind[1], value)
+    if kind[0] == "list":
+        return write("u32", len(value)) + b"".join(write(kind[2], each) for each in value)
+    if kind[0] == "tuple":
+        return b"".join(write(of, each) for of, each in zip(kind[1:], value))
     if kind in ("u8", "bool"):
         return bytes([value])
     if kind == "f32":
@@ -78,152 +109,58 @@ class Reader:
 
     def varint(self, bits):
         value = shift = 0
-        while True:
+        while shift < bits:
             byte = self.take(1)[0]
             value |= (byte & 127) << shift
             shift += 7
             if byte < 128:
-                break
-        if value >> bits:
-            raise Refused("a number is too large")
-        return value
+                if value >> bits:
+                    break
+                return value
+        raise Refused("a number is too large")
 
     def read(self, kind, name=""):
+        begin = self.at
+        note = lambda said: self.parts.append((self.data[begin : self.at], name, str(said)))
+        if isinstance(kind, str) and kind in TYPES:
+            return self.read(TYPES[kind], name)
         if isinstance(kind, dict):
             return {it: self.read(of, f"{name}.{it}".strip(".")) for it, of in kind.items()}
-        begin = self.at
-        tell = lambda said: self.parts.append((self.data[begin : self.at], name, str(said)))
-        if isinstance(kind, Optional):
+        if kind[0] == "choice":
+            index = self.varint(32) + 1
+            if index >= len(kind):
+                raise Refused(f"{name}: no variant {index - 1}")
+            variant, of = kind[index]
+            note(variant)
+            return {variant: self.read(of, f"{name}.{variant}")} if of else variant
+        if kind[0] == "tuple":
+            return [self.read(of, f"{name}[{i}]") for i, of in enumerate(kind[1:])]
+        if kind[0] == "optional":
             is_there = self.take(1)[0]
             if is_there > 1:
                 raise Refused(f"{name}: neither there nor not")
-            tell("some" if is_there else "none")
-            return self.read(kind.of, name) if is_there else None
-        if isinstance(kind, List):
+            note("some" if is_there else "none")
+            return self.read(kind[1], name) if is_there else None
+        if kind[0] == "list":
             count = self.varint(32)
-            if count > kind.most:
+            if count > kind[1]:
                 raise Refused(f"{name}: too many")
-            tell(count)
-            return [self.read(kind.of, f"{name}[{i}]") for i in range(count)]
-        if isinstance(kind, Choice):
-            index = self.varint(32)
-            if index >= len(kind.variants):
-                raise Refused(f"{name}: no variant {index}")
-            variant, of = kind.variants[index]
-            tell(variant)
-            if name == "message":
-                name = "" if isinstance(of, dict) else variant.lower()
-            return variant, self.read(of, name) if of else None
+            note(count)
+            return [self.read(kind[2], f"{name}[{i}]") for i in range(count)]
         if kind in ("u8", "bool"):
             value = self.take(1)[0]
-            if kind == "bool" and value > 1:
-                raise Refused(f"{name}: neither true nor false")
+            if kind == "bool":
+                if value > 1:
+                    raise Refused(f"{name}: neither true nor false")
+                value = bool(value)
         elif kind == "f32":
             (value,) = struct.unpack("<f", self.take(4))
         else:
             value = self.varint(BITS[kind])
             if kind.startswith("i"):
                 value = -(value + 1 >> 1) if value & 1 else value >> 1
-        tell(f"{value:.6g}" if kind == "f32" else ["false", "true"][value] if kind == "bool" else value)
+        note(f"{value:.6g}" if kind == "f32" else value)
         return value
-
-
-SITE = {"x": "i32", "z": "i32"}
-POSE = {"site": SITE, "heading": "u32"}
-LABEL = Choice(Negative=None, Positive=None)
-READING = Choice(Side=LABEL, Boundary=None)
-SAMPLE = {"site": SITE, "label": LABEL}
-CAPACITY = {"samples": "u16", "hypotheses": "u16"}
-TOOK = {"observe": "u32", "plan": "u32", "estimate": "u32"}
-MOTION = {
-    "stage": Optional(Choice(P1=None, P2=None, P3=None, P4=None, Audit=None, Seek=None, Follow=None,
-                             Pass=None, Return=None)),
-    "recovery": Optional(Choice(Undirected=None, Reorient=None, Transit=None)),
-    "action": "u32",
-    "control": {"v": "f32", "w": "f32"},
-    "target": POSE,
-    "wants_label": "bool",
-    "examined": "u32",
-    "proven": "bool",
-}
-LINE = {"about": SITE, "along": SITE, "slope": "f32", "intercept": "f32"}
-WAIST = {"site": SITE, "heading": "u32", "curvature": "f32", "deviation": "f32",
-         "turn_deviation": "f32"}
-NO_SPACE = Choice(
-    Collinear=None, OneLabel=None, NotSeparable="u32", TooMany=None, TooVague=None, Tolerance=None,
-)
-BAD_GRID = Choice(Actions=None, Reach=None, Turn=None, Circle=None)
-NO_VEHICLE = Choice(Kind=None, Grid=BAD_GRID, Room={"across_mm": "u32"})
-STOP = Choice(
-    Resolution=None, SamplesFull=None, OutsideArea=None, Cornered=None, Known=None, Undecided=None,
-    Tolerance=None, NoLine=None, Worth=None, Closed=None, OneLabel=None,
-)
-REFUSED = Choice(Contradiction=SAMPLE, Full=SAMPLE, Tolerance="u32", Reliability=None)
-REQUEST = Choice(
-    Hello={"protocol": "u16"},
-    Outline={"number": "u8"},
-    Ready={"capacity": CAPACITY, "clock": {"per_second": "u32", "emulated": "bool"}},
-    Declined=Choice(
-        Protocol="u16", Algorithm=None, Capacity=CAPACITY, Given=NO_SPACE, Labels=None,
-        Vehicle=NO_VEHICLE, Area=None, Tolerance=None, Goal=None, Price=None,
-    ),
-    Move={"motion": MOTION, "last": Optional(READING), "took": TOOK},
-    End={
-        "reason": Choice(Steps=None, Stopped=STOP, Refused=REFUSED, Sensor=None, Vehicle=None,
-                         Labels=None),
-        "last": Optional(READING),
-        "took": TOOK,
-        "estimates": {name: Optional(LINE) for name in ("bisector", "centre", "maximum_margin")},
-    },
-    Onward={"last": Optional(READING)},
-    Front={"waist": Optional(WAIST), "is_closed": "bool"},
-)
-NOISE = {"reliability": "i64", "trusted_radius": "u32", "tolerance": "u32"}
-FRONT = {"radius_mm": "u32", "speed_um": "u32"}
-POLICY = Choice(Joint=None, MixtureOfStart=None, MixtureOfOwn=None)
-PRIOR = Choice(Area=None, Sequences=None)
-FAR = {"price_mm": "u32", "labels": "u16"}
-SIGHT = {"far": Optional(FAR), "least": "u16", "readings": "u8"}
-GOAL = {"accuracy": Choice(SlopeArc="u32", Misclassified="u32"), "level": "u32"}
-STEPS = {"turn_step_urad": "u32", "sharpest": "u32", "speeds": "u16", "speed_step_mm": "u32"}
-CIRCLE = {"radius_mm": "u32", "shortest_mm": "u32", "turn_step_urad": "u32", "speeds": "u16",
-          "speed_step_mm": "u32"}
-SETUP = {
-    "protocol": "u16",
-    "algorithm": Choice(
-        Cfc=None,
-        Scc={"noise": NOISE, "policy": POLICY, "prior": PRIOR},
-        Lookahead={"evaluations": "u32", "goal": Optional(GOAL),
-                   "noise": Optional({"noise": NOISE, "prior": PRIOR}), "sight": SIGHT},
-        Track={"front": FRONT, "noise": NOISE, "ends": "bool"},
-        Watch={"front": FRONT, "noise": NOISE, "stretch_mm": "u32"},
-    ),
-    "config": {
-        "area": {"min": SITE, "max": SITE},
-        "varrho": "u32",
-        "crossing": Choice(Unrestricted=None, AlongOracle=None, AcrossBisector=None),
-        "following": Choice(Unrestricted=None, AlongBisector=None),
-        "tolerance": "u32",
-    },
-    "keep_outs": Optional("u8"),
-    "vehicle": Choice(Unicycle=STEPS, Boat=STEPS, Car=CIRCLE),
-    "capacity": CAPACITY,
-    "steps": "u16",
-    "most_labels": Optional("u16"),
-    "start": POSE,
-    "labels": Choice(Vehicle=None, Chip=None),
-    "given": List(SAMPLE, 16),
-}
-REPLY = Choice(
-    Setup=SETUP,
-    Outline={"corners": List(SITE, 8), "radius": "u32"},
-    Arrived={"pose": POSE, "reading": Optional(READING)},
-    Failed=None, Noted=None, Busy=None, Stale=None,
-    OnTheWay={"site": SITE, "reading": Optional(READING)},
-)
-TO_VEHICLE, TO_CHIP = ord("?"), ord("!")
-ENVELOPES = {way: {"way": "u8", "session": "u32", "number": "u32", "message": of}
-             for way, of in ((TO_VEHICLE, REQUEST), (TO_CHIP, REPLY))}
 
 
 # Frames.
@@ -261,7 +198,7 @@ def envelope(content, ways=ENVELOPES):
     return (said, reader.parts) if reader.at == len(content) else (None, [])
 
 
-# The page's examples.
+# What this file does as a program.
 
 
 def split(stuffed):
@@ -272,28 +209,34 @@ def split(stuffed):
     said, parts = envelope(content)
     if said is None:
         sys.exit("this frame holds no message")
-    if frame(write(ENVELOPES[said["way"]], said)) != stuffed:
-        sys.exit("written again this message is another frame")
     parts.append((struct.pack("<I", zlib.crc32(content)), "", "check sum"))
     return [f"{part.hex(' '):17}  {name:30}  {text}" for part, name, text in parts]
 
 
-def vectors(path):
-    blocks = re.findall(r"\n```frame\n(.*?)\n(.*?)\n\n(.*?)\n```", open(path).read(), re.S)
-    for name, stuffed, parts in blocks:
-        if split(bytes.fromhex(stuffed)) != parts.split("\n"):
-            sys.exit(f"{path}: {name}: read as\n" + "\n".join(split(bytes.fromhex(stuffed))))
-    print(f"{len(blocks)} examples agree")
+def vectors():
+    single = lambda text: struct.unpack("<f", struct.pack("<f", float(text)))[0]
+    lines = (HERE / "protocol.vectors").read_text().splitlines()
+    for line in lines:
+        vector = json.loads(line, parse_float=single)
+        sent = bytes.fromhex(vector["frame"])
+        content = unframe(sent.strip(b"\0"))
+        said = envelope(content)[0] if content else None
+        expected = vector.get("envelope")
+        if said != expected:
+            sys.exit(f"{vector['name']}: read as {said}")
+        if said and frame(write(ENVELOPES[said["way"]], expected)) != sent:
+            sys.exit(f"{vector['name']}: encoded again it is another frame")
+    print(f"{len(lines)} vectors agree")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--vectors", help="check the examples of this page")
+    what.add_argument("--vectors", action="store_true", help="check protocol.vectors")
     what.add_argument("--split", help="a frame in hexadecimal digits")
     args = parser.parse_args()
     if args.vectors:
-        vectors(args.vectors)
+        vectors()
     else:
         print("\n".join(split(bytes.fromhex(args.split))))
 

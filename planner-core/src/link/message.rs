@@ -22,7 +22,7 @@
 //!
 //! A mission that was cut off needs no message of its own. Planners are deterministic, so it is flown again from its
 //! beginning. The vehicle answers the motions that it has already made from memory, without moving. `docs/protocol.md`
-//! describes the protocol byte by byte.
+//! describes the protocol.
 //!
 //! A message goes as a [`Frame`](crate::link::frame::Frame). [`delivery`](crate::link::delivery) handles loss,
 //! repetition and lateness.

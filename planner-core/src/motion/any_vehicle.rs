@@ -24,6 +24,7 @@ pub enum AnyVehicle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename = "Vehicle"))]
 pub enum Shape {
     /// Of a [`Unicycle`].
     Unicycle(unicycle::Shape),

@@ -45,6 +45,7 @@ pub struct Car {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename = "Circle"))]
 pub struct Shape {
     /// Radius of the turning circle, millimetres.
     pub radius_mm: u32,

@@ -27,6 +27,7 @@ pub struct Unicycle {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename = "Steps"))]
 pub struct Shape {
     /// The angle from one turn to the next, microradians.
     pub turn_step_urad: u32,

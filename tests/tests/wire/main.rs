@@ -6,3 +6,4 @@ mod port;
 mod protocol;
 mod resuming;
 mod sensors;
+mod traced;

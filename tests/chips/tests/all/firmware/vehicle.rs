@@ -1,4 +1,4 @@
-//! `docs/vehicle.py`, a vehicle that was written from `docs/protocol.md` alone, flies missions with the firmware.
+//! `docs/vehicle.py`, a vehicle by `docs/protocol.md` and `docs/protocol.schema` alone, flies missions with the firmware.
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
