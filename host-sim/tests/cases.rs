@@ -1,16 +1,18 @@
 //! Runs the cases in `cases/`: each is a page that shows commands and what they print. `cases/README.md` describes
-//! the pages.
+//! the pages. The pages for readers, README.md and those in `docs/`, are cases as well.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read as _, Seek as _};
+use std::os::unix::fs::symlink;
 use std::os::unix::process::CommandExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitCode, ExitStatus};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use host_sim::mission::scenario::{self, Overrides};
 use libtest_mimic::{Arguments, Failed, Trial};
 use snapbox::Data;
 use snapbox::assert::{Assert, DEFAULT_ACTION_ENV};
@@ -36,7 +38,23 @@ fn main() -> io::Result<ExitCode> {
             trials.push(trial.with_ignored_flag(!is_wanted));
         }
     }
+    let root = Path::new(PACKAGE).join("..");
+    let readers = ["README.md", "CONTRIBUTING.md", "planner-core/README.md", "docs"];
+    for page in readers.iter().flat_map(|it| markdown(&root.join(it))) {
+        let name = page.strip_prefix(&root).expect("it is below").with_extension("");
+        let check = move || check_for_readers(&page).map_err(Failed::from);
+        trials.push(Trial::test(name.to_string_lossy(), check));
+    }
     Ok(libtest_mimic::run(&arguments, trials).exit_code())
+}
+
+/// The pages at a path or below it.
+fn markdown(path: &Path) -> Vec<PathBuf> {
+    if path.is_dir() {
+        entries(path).expect("a folder").iter().flat_map(|it| markdown(it)).collect()
+    } else {
+        path.extension().is_some_and(|it| it == "md").then(|| path.to_owned()).into_iter().collect()
+    }
 }
 
 fn entries(folder: &Path) -> io::Result<BTreeSet<PathBuf>> {
@@ -55,13 +73,70 @@ fn has(need: &str) -> bool {
 /// Compares the page with the same page that has the outputs of now, or writes the latter.
 fn check(page: &Path) -> Result<(), String> {
     let folder = Folder::new(page.parent().expect("a topic")).map_err(|it| it.to_string())?;
-    let expected = Data::read_from(page, None);
     let text = fs::read_to_string(page).map_err(|it| it.to_string())?;
-    let actual = Data::text(page_of_now(&text, &folder)?);
+    compare(page, page_of_now(&text, &folder)?)
+}
+
+/// Reads the TOML of a page, runs its commands in their order, and compares what it says that they print.
+fn check_for_readers(page: &Path) -> Result<(), String> {
+    let text = fs::read_to_string(page).map_err(|it| it.to_string())?;
+    let folder = Folder::for_readers().map_err(|it| it.to_string())?;
+    let (mut now, mut before) = (String::new(), "");
+    let mut lines = text.split_inclusive('\n');
+    while let Some(line) = lines.next() {
+        now += line;
+        if let Some(kind) = line.strip_prefix("```").map(str::trim_end) {
+            let block: Vec<_> = lines.by_ref().take_while(|it| *it != "```\n").collect();
+            let block = block.concat();
+            let why = |it: String| format!("{it}\n```{kind}\n{block}```");
+            now += &match kind {
+                "sh" if before.starts_with("<!-- not run: ") => {
+                    let told = folder.run(&flags_of(&block)).map_err(|it| it.to_string())?;
+                    if told.is_empty() { Ok(block.clone()) } else { Err(why(told)) }?
+                }
+                "console" => {
+                    let fenced = page_of_now(&format!("{line}{block}```\n"), &folder)?;
+                    fenced[line.len()..fenced.len() - 4].to_owned()
+                }
+                "toml" => folder.take(&block).map_err(why).map(|()| block.clone())?,
+                "sh" => {
+                    let script = format!("set -e\n{block}");
+                    let told = folder.run(&script).map_err(|it| it.to_string())?;
+                    let has_failed = told.lines().last().is_some_and(|it| it.starts_with("? "));
+                    if has_failed { Err(why(told)) } else { Ok(block.clone()) }?
+                }
+                _ => block.clone(),
+            };
+            now += "```\n";
+        }
+        before = line;
+    }
+    compare(page, now)?;
+    for figure in entries(&Path::new(PACKAGE).join("figures")).map_err(|it| it.to_string())? {
+        let name = figure.file_name().expect("a name").to_string_lossy();
+        if text.contains(&format!("](host-sim/figures/{name})")) {
+            let drawn = fs::read_to_string(folder.place.path().join(&*name));
+            compare(&figure, drawn.map_err(|it| format!("{name}: {it}"))?)?;
+        }
+    }
+    Ok(())
+}
+
+/// Compares a file with what it would be now, or writes it.
+fn compare(file: &Path, now: String) -> Result<(), String> {
     Assert::new()
         .action_env(DEFAULT_ACTION_ENV)
-        .try_eq(Some(&"now"), actual.raw(), expected.raw())
+        .try_eq(Some(&"now"), Data::text(now).raw(), Data::read_from(file, None).raw())
         .map_err(|it| it.to_string())
+}
+
+/// A script that reads the flags of the commands of this program in a block that cannot be run.
+fn flags_of(block: &str) -> String {
+    let joined = block.replace("\\\n", " ");
+    let is_ours =
+        |it: &&str| ["host-sim ", "cargo run --release -- "].iter().any(|its| it.starts_with(its));
+    let lines = joined.lines().filter(is_ours).flat_map(|it| [it, "\n"]);
+    ["set -e; export ONLY_FLAGS=1\n"].into_iter().chain(lines).collect()
 }
 
 /// The page with the outputs of now. An output that fits the page's elisions keeps them.
@@ -115,6 +190,44 @@ impl Folder {
         Ok(Self { place, path })
     }
 
+    /// A folder that looks like the root of the repository, after `cargo build --release`.
+    fn for_readers() -> io::Result<Self> {
+        let mut it = Self::new(Path::new("none"))?;
+        let programs = PathBuf::from(format!("{PACKAGE}/tests/cases/bin/pages"));
+        let release = it.place.path().join("target/release");
+        fs::create_dir_all(&release)?;
+        symlink(programs.join("host-sim"), release.join("host-sim"))?;
+        symlink(PACKAGE, it.place.path().join("host-sim"))?;
+        let path = [programs].into_iter().chain(std::env::split_paths(&it.path));
+        it.path = std::env::join_paths(path).map_err(io::Error::other)?;
+        Ok(it)
+    }
+
+    /// Reads a block of TOML. One whose first line is a comment that names a file becomes this file. One that is no whole
+    /// mission is read with the keys that it lacks from one of the simulator's.
+    fn take(&self, block: &str) -> Result<(), String> {
+        let of = |text: &str| text.parse::<toml::Table>().map_err(|it| it.to_string());
+        let keys = of(block)?;
+        if keys.contains_key("package") || keys.contains_key("dependencies") {
+            return Ok(());
+        }
+        let file = block.strip_prefix("# ").and_then(|it| it.split_once(".toml")).map(|it| it.0);
+        if let Some(file) = file.filter(|it| !it.contains(' ')) {
+            let path = self.place.path().join(file).with_extension("toml");
+            fs::write(path, block).map_err(|it| it.to_string())?;
+        }
+        let is_whole = ["truth", "oracle"].iter().all(|it| keys.contains_key(*it));
+        let is_front = keys.contains_key("front") || keys.contains_key("seek");
+        let other = match is_front {
+            true => include_str!("../scenarios/coast.toml"),
+            false => include_str!("../scenarios/begin-true.toml"),
+        };
+        let mut mission = if is_whole { toml::Table::new() } else { of(other)? };
+        mission.extend(keys);
+        let read = scenario::parse("TOML", &mission.to_string(), Overrides::default());
+        read.map(drop).map_err(|it| format!("{it:#}"))
+    }
+
     /// What the command prints: standard output, then standard error, then `? N` if its status N is not 0.
     fn run(&self, command: &str) -> io::Result<String> {
         let before = entries(self.place.path())?;
@@ -123,6 +236,8 @@ impl Folder {
             .args(["-c", command])
             .current_dir(self.place.path())
             .env("PATH", &self.path)
+            .env("HOST_SIM", HOST_SIM)
+            .env("ROOT", format!("{PACKAGE}/.."))
             .env("SCENARIOS", format!("{PACKAGE}/scenarios"))
             .env("RECORDINGS", format!("{PACKAGE}/recordings"))
             .envs([("NO_COLOR", "1"), ("TERM", "dumb"), ("COLUMNS", "100"), ("LC_ALL", "C")])

@@ -9,11 +9,11 @@
     allow(dead_code, unreachable_pub, rustdoc::private_intra_doc_links)
 )]
 
-//! A planner that finds a straight boundary from few samples.
+//! A planner that finds and maps a boundary, straight or bending, from few yes-or-no readings.
 //!
-//! A robot moves in a plane that an unknown straight line divides: the edge of a spill, a front in the sea, a
+//! A robot moves in a plane that an unknown boundary divides: the edge of a spill, a front in the sea, a
 //! shoreline, the border of a field. At each stop it senses on which side it is: a label, +1 or -1. A position with
-//! its label is a sample. A few samples are given at the start: at least three, not on one line, of both labels. The
+//! its label is a sample. For a boundary that bends or moves there is [`Track`]. This page is about a straight line. A few samples are given at the start: at least three, not on one line, of both labels. The
 //! planner returns the next motion, so that few samples and little effort identify the line.
 //!
 //! ```

@@ -19,7 +19,7 @@ use crate::cli::size::{SizeArgs, size};
 use crate::cli::{help, paper};
 use crate::output::notes::{self, Loudness};
 
-/// Simulates a robot that finds an unknown straight boundary from few samples.
+/// Simulates a robot that finds and maps an unknown boundary, straight or bending.
 ///
 /// Without a command: the paper's two examples, as printed, by default and by look-ahead, with
 /// figures in out/.
