@@ -1,3 +1,7 @@
+//! The program of the README: a line, a drive and a sensor.
+//!
+//! `cargo run -p planner-core --example first`
+
 use std::{cell::Cell, convert::Infallible, error::Error};
 
 use planner_core::nalgebra::Point2;

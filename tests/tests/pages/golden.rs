@@ -9,7 +9,6 @@ use std::path::Path;
 
 use expect_test::expect_file;
 use host_sim::campaign::standard_field;
-use host_sim::cli::paper::FLIGHTS;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
@@ -104,16 +103,6 @@ fn hashes_of_traces_figures_and_campaigns() {
     let samples = samples.to_str().expect("UTF-8");
     line("replay", &run(&format!("replay {samples} --format json")));
     expect_file!["../golden/hashes.txt"].assert_eq(&table);
-}
-
-/// The README's picture is the first that the bare command draws.
-#[test]
-fn the_picture_in_the_readme() {
-    let [printed, ..] = FLIGHTS;
-    assert_eq!(printed.figure, "paper-noiseless.svg");
-    let recording = printed.fly().expect("noiseless");
-    let figure = printed.picture(&recording).svg();
-    expect_file!["../../../host-sim/figures/paper-noiseless.svg"].assert_eq(&figure);
 }
 
 fn describe(table: &mut String, name: &str, results: &Results) -> std::fmt::Result {
