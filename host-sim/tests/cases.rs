@@ -111,6 +111,14 @@ fn check_for_readers(page: &Path) -> Result<(), String> {
         }
         before = line;
     }
+    // Commands within sentences and tables.
+    let prose: Vec<_> = text.split("```").step_by(2).collect();
+    let spans = prose.iter().flat_map(|it| it.split('`').skip(1).step_by(2));
+    let named: String = spans.map(|it| it.replace('\n', " ") + "\n").collect();
+    let told = folder.run(&flags_of(&named)).map_err(|it| it.to_string())?;
+    if !told.is_empty() {
+        return Err(told);
+    }
     compare(page, now)?;
     for figure in text.split("host-sim/figures/").skip(1) {
         let name = figure.split(')').next().expect("one at least");
@@ -132,8 +140,8 @@ fn compare(file: &Path, now: String) -> Result<(), String> {
 /// A script that reads the flags of the commands of this program in a block that cannot be run.
 fn flags_of(block: &str) -> String {
     let joined = block.replace("\\\n", " ");
-    let is_ours =
-        |it: &&str| ["host-sim ", "cargo run --release -- "].iter().any(|its| it.starts_with(its));
+    let begins = ["host-sim ", "cargo ", "LONG=1 cargo ", "UPDATE_EXPECT=1 cargo "];
+    let is_ours = |it: &&str| begins.iter().any(|its| it.starts_with(its)) && !it.contains("...");
     let lines = joined.lines().filter(is_ours).flat_map(|it| [it, "\n"]);
     ["set -e; export ONLY_FLAGS=1\n"].into_iter().chain(lines).collect()
 }

@@ -42,6 +42,13 @@ fn the_readme_shows_an_example() {
     assert_eq!(first_program(readme), program);
 }
 
+#[test]
+fn the_readme_is_short() {
+    let readme = include_str!("../../../README.md");
+    let lines = readme.lines().count();
+    assert!(lines <= 150 && readme.len() <= 8 * 1024, "{lines} lines, {} bytes", readme.len());
+}
+
 /// The page tells how long each is.
 #[test]
 fn the_page_tells_their_lines() {
