@@ -225,9 +225,10 @@ impl Folder {
         }
         let is_whole = ["truth", "oracle"].iter().all(|it| keys.contains_key(*it));
         let is_front = keys.contains_key("front") || keys.contains_key("seek");
-        let other = match is_front {
-            true => include_str!("../scenarios/coast.toml"),
-            false => include_str!("../scenarios/begin-true.toml"),
+        let other = if is_front {
+            include_str!("../scenarios/coast.toml")
+        } else {
+            include_str!("../scenarios/begin-true.toml")
         };
         let mut mission = if is_whole { toml::Table::new() } else { of(other)? };
         mission.extend(keys);
