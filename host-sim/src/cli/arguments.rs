@@ -56,7 +56,7 @@ pub(crate) enum Command {
     Reference(ReferenceArgs),
     /// Print what a planner needs on a chip: flash, RAM, instructions
     Size(SizeArgs),
-    /// Write a commented scenario to begin with
+    /// Write a commented file to begin with: a scenario, or a recording
     Init(Init),
     /// Print a script with which a shell completes commands and flags
     Completions(Completions),

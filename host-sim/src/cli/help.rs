@@ -3,8 +3,8 @@
 pub(crate) const MAIN: &str = "\
 Examples:
   host-sim                                     the paper's examples, figures in out/
-  host-sim init mission.toml                   a commented scenario to begin with
-  host-sim run mission.toml --figure m.svg     fly it, and draw it
+  host-sim init                                writes mission.toml, a commented scenario to begin with
+  host-sim run mission.toml --figure m.svg     runs and draws it
   host-sim campaign --compare cfc,lookahead    two planners on the same 1,000 fields
   host-sim replay samples.csv                  what samples of your own determine
 
@@ -111,8 +111,9 @@ Examples:
 
 pub(crate) const INIT: &str = "\
 Examples:
-  host-sim init
-  host-sim init harbour.toml --kind noisy";
+  host-sim init                                a straight boundary, in mission.toml
+  host-sim init spill harbour.toml
+  host-sim init recording";
 
 pub(crate) const COMPLETIONS: &str = "\
 Examples:

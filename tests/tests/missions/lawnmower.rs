@@ -157,7 +157,7 @@ fn without_a_limit_it_reads_a_label_after_each_motion() {
 /// Its tracks go straight across, so it refuses what is in their way.
 #[test]
 fn it_refuses_areas_that_are_not_plain_rectangles() {
-    let scenario = include_str!("../../../host-sim/scenarios/begin-true.toml");
+    let scenario = include_str!("../../../host-sim/scenarios/begin-line.toml");
     let asked = Overrides { algorithm: Some(Algorithm::Lawnmower), ..Overrides::default() };
     assert!(scenario::parse("m.toml", scenario, asked).is_ok());
     let area = "area = { x = [0.0, 20.0], z = [0.0, 20.0] }";

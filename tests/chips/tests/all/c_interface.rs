@@ -320,6 +320,8 @@ fn a_c_program_flies_the_same_missions() {
         let (flight, _) = said.trim_end().rsplit_once(", ").expect("bytes at the end");
         assert_eq!(flight, flown_here(is_doubtful), "{argument}");
     }
+    let bloom = said(&program(&library, &folder().join("bloom.c")), "");
+    assert!(bloom.lines().count() > 30, "{bloom}");
     said(&program(&library, &here("misuse.c")), "");
     let following = program(&library, &here("following.c"));
     for (mode, here) in ["", "watch"].into_iter().zip(followed()) {
