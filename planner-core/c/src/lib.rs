@@ -3,7 +3,7 @@
 //! `planner-core` behind a C interface: look-ahead for a unicycle in a rectangle or a convex polygon with keep-outs, with
 //! labels that are true or sometimes wrong; and the follower and the guard of fronts.
 //!
-//! `include/planner.h` is made from these sources, `example.c` is a program that uses it. There is no allocation: a
+//! `include/planner.h` is made from these sources, `example.c` and `bloom.c` use it. There is no allocation: a
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
 //!
 //! A mission is checked as a whole before memory is written, so a refusal changes nothing. All planners take one type of area, so

@@ -6,8 +6,8 @@
 
 #include "planner.h"
 
-static uint64_t memory[600];
-static uint8_t kept[4800];
+static uint64_t memory[1100];
+static uint8_t kept[8800];
 
 static void print(double number) {
     uint64_t bits;
