@@ -28,7 +28,7 @@ impl Replay {
         let count = samples.len();
         let every =
             if count - bounding.len() > MOST_OTHERS { count.div_ceil(MOST_OTHERS) } else { 1 };
-        let dot = |s: &Sample, ring| Dot { at: s.site.into(), label: s.label, ring };
+        let dot = |s: &Sample, ring| Dot { at: s.site.into(), label: s.label, ring, sought: false };
         let mut dots: Vec<_> =
             samples.iter().zip(rings).step_by(every).map(|(s, ring)| dot(s, ring)).collect();
         if every > 1 {
@@ -72,6 +72,7 @@ impl Replay {
             path: None,
             truth: None,
             lines: centre.into_iter().collect(),
+            follows: false,
             front: Ribbon::default(),
         }
         .svg();

@@ -34,7 +34,7 @@ impl FrontMap {
         let area = area_of(places).context("no area around the samples")?;
         let count = samples.len();
         let every = count.div_ceil(MOST).max(1);
-        let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, ring: None };
+        let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, ring: None, sought: false };
         let sparse =
             if every > 1 { format!("; one label in {every} shown") } else { String::new() };
         let metres = self.map.metres;
@@ -56,6 +56,7 @@ impl FrontMap {
             path: None,
             truth: None,
             lines: Vec::new(),
+            follows: true,
             front,
         };
         Ok(svg.svg())

@@ -40,6 +40,7 @@ impl JoinedMap {
             path: None,
             truth: None,
             lines: Vec::new(),
+            follows: true,
             front,
         };
         Ok(svg.svg())

@@ -15,6 +15,8 @@ pub(crate) enum Look {
     Read(Label),
     /// The same, small: there are many along a front, and they must not hide its map.
     Small(Label),
+    /// The same, lighter, where a front was sought.
+    Faint(Label),
     /// One that was given: larger, outlined.
     Given(Label),
     /// A ring about a label.
@@ -23,6 +25,8 @@ pub(crate) enum Look {
     Wrong,
     /// A diamond where a robot starts.
     Start,
+    /// The same, filled and smaller, where one ends.
+    End,
     /// A small circle where no label was read.
     Unread,
     /// The same, struck through, where one was asked for.
@@ -46,6 +50,8 @@ impl Look {
         match self {
             Self::Read(Label::Positive) | Self::Small(Label::Positive) => "read-positive",
             Self::Read(Label::Negative) | Self::Small(Label::Negative) => "read-negative",
+            Self::Faint(Label::Positive) => "sought-positive",
+            Self::Faint(Label::Negative) => "sought-negative",
             Self::Given(Label::Positive) => "given-positive",
             Self::Given(Label::Negative) => "given-negative",
             Self::Ringed(Ring::Wrong) | Self::Wrong => "wrong",
@@ -53,6 +59,7 @@ impl Look {
             Self::Ringed(Ring::Against) => "against",
             Self::Ringed(Ring::Refutes) => "refutes",
             Self::Start => "start",
+            Self::End => "end",
             Self::Unread => "unread",
             Self::Missing => "missing",
             Self::Truly => "truly",
@@ -72,15 +79,17 @@ impl Look {
         };
         match self {
             Self::Read(label) | Self::Small(label) => group.set("fill", style::of_label(label)),
+            Self::Faint(label) => group.set("fill", style::faint(label)),
             Self::Given(label) => {
                 let group = group.set("fill", style::of_label(label));
                 group.set("stroke", "#000000").set("stroke-width", 1.8)
             }
             Self::Ringed(Ring::Against) => outlined(group, 1.4).set("stroke-dasharray", "3 2"),
             Self::Ringed(_) | Self::Start => outlined(group, 1.4),
-            Self::Truly | Self::Wrong => outlined(group, 1.1),
+            Self::Truly => outlined(group, 1.1),
+            Self::Wrong => outlined(group, 0.8),
             Self::Unread | Self::Missing => outlined(group, 1.2).set("fill", "#ffffff"),
-            Self::Number => group.set("fill", INK),
+            Self::Number | Self::End => group.set("fill", INK),
             Self::Line(Stroke { colour, width, dashes, .. }) => {
                 let group = group.set("fill", "none").set("stroke", colour);
                 let group = group.set("stroke-width", width);
@@ -100,13 +109,16 @@ impl Look {
             Self::Read(Label::Negative) => group.add(square(at, 4.1)),
             Self::Small(Label::Positive) => group.add(circle(at, 2.3)),
             Self::Small(Label::Negative) => group.add(square(at, 2.0)),
-            Self::Wrong => group.add(circle(at, 5.0)),
+            Self::Faint(Label::Positive) => group.add(circle(at, 2.6)),
+            Self::Faint(Label::Negative) => group.add(square(at, 2.3)),
+            Self::Wrong => group.add(circle(at, 4.2)),
             Self::Given(Label::Positive) => group.add(circle(at, 6.8)),
             Self::Given(Label::Negative) => group.add(square(at, 6.1)),
             Self::Ringed(Ring::Refutes) => group.add(circle(at, 8.5)).add(circle(at, 12.5)),
             Self::Ringed(_) => group.add(circle(at, 9.5)),
-            Self::Start => {
-                let to = |x: f64, y: f64| at + Vector2::new(x, y) * 13.0;
+            Self::Start | Self::End => {
+                let size = if self == Self::Start { 13.0 } else { 8.0 };
+                let to = |x: f64, y: f64| at + Vector2::new(x, y) * size;
                 let corners = [to(1.0, 0.0), to(0.0, 1.0), to(-1.0, 0.0), to(0.0, -1.0)];
                 group.add(Path::new().set("d", outline(&corners).close()))
             }

@@ -1,5 +1,7 @@
 //! A map of an area: ground, lines, paths and samples on it, each named in the legend as it is drawn.
 
+use std::collections::HashSet;
+
 use nalgebra::{Point2, Vector2};
 use planner_core::link::message::MissionArea;
 use planner_core::{Label, Line, Workspace as _};
@@ -10,11 +12,11 @@ use crate::report::ground::Ground;
 use crate::report::look::Look;
 use crate::report::numbers;
 use crate::report::picture::{Dot, Ring, Stop};
-use crate::report::placing::{Placing, foot};
+use crate::report::placing::{Frame, Placing, foot};
 use crate::report::ribbon::Ribbon;
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
-use crate::report::style::{BORDER, Fill, HEADING, INK, PATH, Stroke};
+use crate::report::style::{BORDER, FRONT, Fill, HEADING, INK, INSET, PATH, Stroke};
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 
@@ -26,9 +28,19 @@ pub(crate) struct Map {
     placing: Placing,
     /// Words that are placed after all marks: the text, its spot and its size.
     words: Vec<(String, Spot, f64)>,
-    /// Whether it has the map of a front.
+    /// Whether it is of a front: marks are small and thinned, as there are many.
     follows: bool,
+    /// Where a thinned map has marks already: what mark, in which cell.
+    marked: HashSet<(&'static str, [i64; 2])>,
+    /// Whether it shows a part of the area.
+    is_part: bool,
 }
+
+/// A track is shown alone if it is smaller than this share of the area.
+const SMALL: f64 = 0.5;
+
+/// The sides of a part of an area differ by this factor at most.
+const SLIM: f64 = 0.4;
 
 /// The greatest distance of a name from its spot, pixels.
 const REACH: f64 = 90.0;
@@ -41,12 +53,45 @@ impl Map {
         area: &MissionArea,
         more: &[Point2<f64>],
     ) -> Self {
+        let ends = ends(area);
+        let ends = around(ends.into_iter().chain(more.iter().copied())).unwrap_or(ends);
+        Self::between([title, note.unwrap_or_default()], area, more, (ends, false))
+    }
+
+    /// The same for the map of a front. If the track covers a small part of the area, it shows that part.
+    pub(crate) fn following(
+        title: &str,
+        note: Option<&str>,
+        area: &MissionArea,
+        track: &[Point2<f64>],
+    ) -> Self {
+        let [low, high] = ends(area);
+        let part = around(track.iter().copied()).map(|[min, max]| {
+            let size = max - min;
+            let margin = 0.1 * size.amax();
+            let half = size.map(|it| it.max(SLIM * size.amax()) / 2.0 + margin);
+            let middle = nalgebra::center(&min, &max);
+            [middle - half, middle + half]
+        });
+        let part = part.filter(|[min, max]| (max - min).amax() < SMALL * (high - low).amax());
+        let titles = [title, note.unwrap_or_default()];
+        let mut map = match part.filter(|[min, max]| min != max) {
+            Some(part) => Self::between(titles, area, track, (part, true)),
+            None => Self::new(title, note, area, track),
+        };
+        map.follows = true;
+        map
+    }
+
+    fn between(
+        [title, note]: [&str; 2],
+        area: &MissionArea,
+        more: &[Point2<f64>],
+        ([min, max], is_part): ([Point2<f64>; 2], bool),
+    ) -> Self {
         const SIZE: f64 = 620.0;
         const LEAST: f64 = 220.0;
         const TOP: f64 = 70.0;
-        let bounds = area.bounds();
-        let ends = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
-        let [min, max] = around(ends.into_iter().chain(more.iter().copied())).unwrap_or(ends);
         let scale = SIZE / (max - min).amax();
         let size = (max - min).map(|metres| (metres * scale).max(LEAST));
         let axis = |figures, pixels| Axis { scale: Scale::Linear, figures, pixels };
@@ -57,16 +102,27 @@ impl Map {
         let widest = axes.z.ticks().iter().map(|(_, name)| width(name, 12.0)).fold(0.0, f64::max);
         let left = 48.0 + widest;
         axes.x.pixels = [left, left + size.x];
-        let all = (left + size.x + 30.0)
-            .max(24.0 + width(title, 17.0))
-            .max(24.0 + width(note.unwrap_or_default(), 13.0));
+        let all =
+            (left + size.x + 30.0).max(24.0 + width(title, 17.0)).max(24.0 + width(note, 13.0));
         let mut sheet = Sheet::new(title, Vector2::new(all, TOP + size.y + 56.0));
         sheet.words(title, Spot::new(16.0, 28.0), 17.0, Anchor::Start);
-        if let Some(note) = note {
+        if !note.is_empty() {
             sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
         }
+        if is_part {
+            sheet.open();
+        }
         let placing = Placing::new(axes.frame());
-        let mut map = Self { area: *area, axes, sheet, placing, words: Vec::new(), follows: false };
+        let mut map = Self {
+            area: *area,
+            axes,
+            sheet,
+            placing,
+            words: Vec::new(),
+            follows: false,
+            marked: HashSet::new(),
+            is_part,
+        };
         let mut border = map.spots(&Polygon::from(*area).0);
         border.extend(border.first().copied());
         map.placing.way(&border);
@@ -143,18 +199,26 @@ impl Map {
         }
     }
 
-    /// The ground where a mapped front lies with a probability of 0.9, and where it was lost last if it is lost.
-    /// From here on marks are small: there are many along a front, and they must not hide its map.
-    pub(crate) fn front_ground(&mut self, front: &Ribbon) {
-        self.follows = !front.is_empty();
+    /// The ground where a mapped front lies with a probability of 0.9. The legend begins with it and its front.
+    pub(crate) fn front_ground(&mut self, front: &Ribbon, mapped: &str) {
+        let mut is_narrow = true;
         for quad in front.ground() {
             let ring = self.spots(&quad);
+            is_narrow &= (ring[0] - ring[3]).norm() < FRONT.width;
             self.sheet.ground(Fill::Front, &[ring]);
         }
         if !front.is_empty() {
-            self.sheet
-                .name(Look::Ground(Fill::Front), "the front lies here with a probability of 90 %");
+            let seen = if is_narrow { "; here it is narrower than the line" } else { "" };
+            let meaning = format!("the front lies here with a probability of 90 %{seen}");
+            self.sheet.name(Look::Ground(Fill::Front), meaning);
+            self.sheet.name(Look::Line(FRONT), mapped);
         }
+    }
+
+    /// Whether there is space for a mark: a map of a front has one of a look in each cell of so many pixels.
+    fn has_space(&mut self, look: Look, at: Spot, cell: f64) -> bool {
+        let of = |it: f64| (it / cell).floor() as i64;
+        !self.follows || self.marked.insert((look.class(), [of(at.x), of(at.y)]))
     }
 
     /// Draws the keep-outs.
@@ -242,13 +306,19 @@ impl Map {
                 self.placing.mark(truly, 4.0);
             }
             if stop.lacks_reading {
-                self.sheet.mark(Look::Missing, at);
+                if self.has_space(Look::Missing, at, 12.0) {
+                    self.sheet.mark(Look::Missing, at);
+                }
                 self.sheet.name(Look::Missing, "a label was asked for, and none came");
-            } else if !stop.sensed {
+            } else if !stop.sensed && !self.follows {
                 self.sheet.mark(Look::Unread, at);
                 self.sheet.name(Look::Unread, "a stop where no label was read");
             }
             self.placing.mark(at, 4.5);
+        }
+        if let (true, Some(end)) = (self.follows, way.last()) {
+            self.sheet.mark(Look::End, *end);
+            self.sheet.name(Look::End, "end");
         }
     }
 
@@ -276,6 +346,9 @@ impl Map {
             let (look, meaning, radius) = if k < given {
                 self.beside(&format!("p{}", k + 1), at, 14.0);
                 (Look::Given(dot.label), format!("given beforehand, label {sign:+}"), 8.0)
+            } else if dot.sought {
+                let meaning = format!("label {sign:+}, while the front was sought");
+                (Look::Faint(dot.label), meaning, 3.0)
             } else {
                 let look = if self.follows { Look::Small } else { Look::Read };
                 (look(dot.label), format!("label {sign:+} was read here"), 5.0)
@@ -289,10 +362,14 @@ impl Map {
                 };
                 let is_small = self.follows && ring == Ring::Wrong;
                 let ring = if is_small { Look::Wrong } else { Look::Ringed(ring) };
-                self.sheet.mark(ring, at);
+                if self.has_space(ring, at, 12.0) {
+                    self.sheet.mark(ring, at);
+                }
                 self.sheet.name(ring, meaning);
             }
-            self.sheet.mark(look, at);
+            if k < given || self.has_space(look, at, 8.0) {
+                self.sheet.mark(look, at);
+            }
             self.sheet.name(look, meaning);
             let radius = match dot.ring {
                 None => radius,
@@ -301,6 +378,51 @@ impl Map {
             };
             self.placing.mark(at, radius);
         }
+    }
+
+    /// All of the area in a corner with few of the places of a track, and what part of it is shown.
+    pub(crate) fn inset(&mut self, track: &[Point2<f64>]) {
+        const SIDE: f64 = 120.0;
+        const OFF: f64 = 8.0;
+        if !self.is_part {
+            return;
+        }
+        let frame = self.axes.frame();
+        self.sheet.close(&frame);
+        let [min, max] = ends(&self.area);
+        let scale = SIDE / (max - min).amax();
+        let half = (max - min) * scale / 2.0;
+        let off = frame.half - half - Vector2::repeat(OFF);
+        let signs = [[1.0, -1.0], [1.0, 1.0], [-1.0, -1.0], [-1.0, 1.0]];
+        let boxes = signs.map(|[x, y]| Frame {
+            middle: frame.middle + Vector2::new(x * off.x, y * off.y),
+            half,
+        });
+        let spots = self.spots(track);
+        let hidden = |it: &Frame| spots.iter().filter(|at| it.meets(&[**at, **at])).count();
+        let Some(place) = boxes.into_iter().min_by_key(hidden) else { return };
+        let corner = Spot::new(place.middle.x - half.x, place.middle.y + half.y);
+        let spot = |at: &Point2<f64>| {
+            let from = (at - min) * scale;
+            corner + Vector2::new(from.x, -from.y)
+        };
+        let ring = |[from, to]: [Point2<f64>; 2]| {
+            let corners = [(from.x, from.y), (to.x, from.y), (to.x, to.y), (from.x, to.y)];
+            let mut ring: Vec<_> =
+                corners.iter().map(|(x, z)| spot(&Point2::new(*x, *z))).collect();
+            ring.push(ring[0]);
+            ring
+        };
+        let all = ring([min, max]);
+        let ([left, right], [bottom, top]) = (self.axes.x.figures, self.axes.z.figures);
+        let part = ring([Point2::new(left, bottom), Point2::new(right, top)]);
+        self.sheet.ground(Fill::Blank, std::slice::from_ref(&all));
+        self.sheet.ways(INSET, [&all[..], &part[..]]);
+        let of = max - min;
+        let meaning =
+            format!("inset: all of the area, {} m x {} m, and the part shown", of.x, of.y);
+        self.sheet.name(Look::Line(INSET), meaning);
+        self.placing.block(place);
     }
 
     /// The numbers of steps, after names have found their places; then the figure is complete.
@@ -319,11 +441,17 @@ impl Map {
         let spots: Vec<_> = stops.iter().map(|stop| self.axes.at(stop.at)).collect();
         numbers::draw(&mut self.sheet, &mut self.placing, &spots);
         self.axes.draw(&mut self.sheet, ["x, metres", "z, metres"]);
-        if self.area.sides().next().is_some() {
+        if self.area.sides().next().is_some() && !self.is_part {
             let mut corners = self.spots(&Polygon::from(self.area).0);
             corners.extend(corners.first().copied());
             self.sheet.ways(BORDER, [&corners[..]]);
         }
         self.sheet.finish()
     }
+}
+
+/// The lower left and the upper right corner of an area's bounds.
+fn ends(area: &MissionArea) -> [Point2<f64>; 2] {
+    let bounds = area.bounds();
+    [bounds.min(), bounds.max()].map(Point2::from)
 }

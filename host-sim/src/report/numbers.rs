@@ -1,6 +1,6 @@
 //! The numbers of steps, placed beside the steps' ends. Where there is too little space a number is left out. The
-//! first, the last and every fifth are always shown: they stand further away, and a thin line leads to them. Of many steps
-//! these are fewer, and no others are shown.
+//! first, the last and every fifth are always shown: they stand further away, and a thin line leads to them. Many steps have
+//! no numbers.
 
 use nalgebra::Vector2;
 
@@ -16,21 +16,23 @@ const LEADER: Stroke = Stroke { class: "number", colour: INK, width: 0.6, dashes
 /// The distance of a number from its step, pixels: the least, the greatest without a leader, the greatest.
 const AWAY: [f64; 3] = [5.0, 13.0, 120.0];
 
-/// The steps between two numbers that are always shown: the first of these by which there are few enough.
-const EVERY: [usize; 7] = [5, 10, 50, 100, 500, 1_000, 5_000];
+/// The steps between two numbers that are always shown.
+const EVERY: usize = 5;
 
-/// Numbers that are always shown, at most.
+/// Steps that have numbers, at most.
 const MOST: usize = 60;
 
 /// Draws them; steps end at these places.
 pub(crate) fn draw(sheet: &mut Sheet, placing: &mut Placing, stops: &[Spot]) {
     let [least, near, most] = AWAY;
     let count = stops.len();
-    let every = EVERY.into_iter().find(|it| count / it <= MOST).unwrap_or(count);
-    let is_kept = |k: usize| k == 1 || k == count || k.is_multiple_of(every);
+    if count > MOST {
+        return;
+    }
+    let is_kept = |k: usize| k == 1 || k == count || k.is_multiple_of(EVERY);
     let kept = (1..=count).filter(|k| is_kept(*k));
-    let others = (1..=count).filter(|k| every == EVERY[0] && !is_kept(*k));
-    let mut left_out = count - kept.clone().count() - others.clone().count();
+    let others = (1..=count).filter(|k| !is_kept(*k));
+    let mut left_out = 0;
     for k in kept.chain(others) {
         let at = stops[k - 1];
         let name = k.to_string();

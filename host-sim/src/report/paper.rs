@@ -156,7 +156,7 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
         (p3, Label::Positive),
         (p4, Label::Negative),
     ];
-    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, ring: None }), 4);
+    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, ring: None, sought: false }), 4);
     Ok(map.finish(&[]))
 }
 

@@ -43,6 +43,8 @@ pub struct Picture {
     pub truth: Option<Truth>,
     /// Other lines, with their names.
     pub lines: Vec<Named>,
+    /// Whether it is of a front, whether or not that was found.
+    pub follows: bool,
     /// The map of a front, if one was followed.
     pub front: Ribbon,
 }
@@ -56,6 +58,8 @@ pub struct Dot {
     pub label: Label,
     /// Why it has a ring, if it has one.
     pub ring: Option<Ring>,
+    /// Whether it was read where a front was sought.
+    pub sought: bool,
 }
 
 /// What a ring about a sample says.
@@ -232,14 +236,15 @@ impl Picture {
         // Those of bounds lie far outside of the picture.
         let (given, first) = (mission.oracle().len(), mission.given.samples().len());
         let heard: Vec<_>; // a belief in a front keeps no samples
-        let (oracle, read) = if belief.front().is_some() {
+        let follows = belief.front().is_some();
+        let (oracle, read) = if follows {
             heard = taken.iter().filter_map(|(_, label)| sample(*label)).collect();
             (&mission.given.samples()[..given], &heard[..])
         } else {
             (&belief.samples()[..given], &belief.samples()[first..])
         };
         let samples = oracle.iter().chain(read);
-        let numbers: Vec<usize> = if mission.world.moves() {
+        let numbers: Vec<usize> = if follows || mission.world.moves() {
             let of_steps = samples.clone().skip(given).map(number);
             std::iter::repeat_n(0, given).chain(of_steps).collect()
         } else {
@@ -253,7 +258,9 @@ impl Picture {
             let is_wrong = !mission.world.after(number).agrees(s.site, s.label);
             let wrong = is_wrong.then_some(Ring::Wrong);
             let ring = wrong.or_else(|| disagrees(s).then_some(Ring::Against));
-            Dot { at: s.site.into(), label: s.label, ring }
+            let step = number.checked_sub(1).and_then(|it| results.steps.get(it));
+            let seeks = step.is_some_and(|it| it.problem.as_deref() == Some("seek"));
+            Dot { at: s.site.into(), label: s.label, ring, sought: follows && seeks }
         };
         // No belief takes in the labels of an audit.
         let audit = results.end.goal.and_then(|goal| goal.audit);
@@ -293,6 +300,7 @@ impl Picture {
             path: Some((Point2::from(mission.start.site), stops.collect())),
             truth: Truth::of(mission, recording.steps.len()),
             lines,
+            follows,
             front: Ribbon::of(results),
         }
     }

@@ -56,7 +56,7 @@ impl Frame {
     }
 
     /// Whether a straight way meets it: no axis separates the two.
-    fn meets(&self, [from, to]: &[Spot; 2]) -> bool {
+    pub(crate) fn meets(&self, [from, to]: &[Spot; 2]) -> bool {
         let (way, off) = ((to - from) / 2.0, nalgebra::center(from, to) - self.middle);
         let across = way.perp(&off).abs();
         off.x.abs() <= self.half.x + way.x.abs()
@@ -68,6 +68,11 @@ impl Frame {
 impl Placing {
     pub(crate) fn new(within: Frame) -> Self {
         Self { within, taken: RTree::new(), ways: RTree::new() }
+    }
+
+    /// A rectangle that words stay off.
+    pub(crate) fn block(&mut self, frame: Frame) {
+        self.taken.insert(frame);
     }
 
     /// A mark of some radius, which words stay off.

@@ -4,9 +4,10 @@
 use nalgebra::Vector2;
 use svg::Document;
 use svg::node::element::path::Data;
-use svg::node::element::{Definitions, Group, Path, Pattern, Rectangle, Title};
+use svg::node::element::{Definitions, Group, Path, Pattern, Rectangle, SVG, Title};
 
 use crate::report::look::{Look, marker};
+use crate::report::placing::Frame;
 use crate::report::shapes::{Anchor, NUMBER, Spot, continued, outline, rounded, text, width};
 use crate::report::style::{self, Fill, HATCHES, INK, Stroke};
 
@@ -15,6 +16,8 @@ pub(crate) struct Sheet {
     size: Vector2<f64>,
     title: String,
     drawn: Group,
+    /// What is cut off at a window, while one is open.
+    window: Option<Group>,
     named: Vec<(Look, String)>,
 }
 
@@ -24,7 +27,7 @@ const ENTRY: f64 = 13.0;
 impl Sheet {
     /// An empty one of some size above its legend.
     pub(crate) fn new(title: &str, size: Vector2<f64>) -> Self {
-        Self { size, title: title.to_owned(), drawn: Group::new(), named: Vec::new() }
+        Self { size, title: title.to_owned(), drawn: Group::new(), window: None, named: Vec::new() }
     }
 
     /// Has the legend say what a look means, once. The legend keeps the order.
@@ -35,7 +38,22 @@ impl Sheet {
     }
 
     fn add(&mut self, group: Group) {
-        self.drawn = std::mem::replace(&mut self.drawn, Group::new()).add(group);
+        let drawn = self.window.as_mut().unwrap_or(&mut self.drawn);
+        *drawn = std::mem::replace(drawn, Group::new()).add(group);
+    }
+
+    /// From here on what is drawn is cut off at a window, until it is [closed](Self::close).
+    pub(crate) fn open(&mut self) {
+        self.window = Some(Group::new());
+    }
+
+    /// Closes the window.
+    pub(crate) fn close(&mut self, frame: &Frame) {
+        let Some(drawn) = self.window.take() else { return };
+        let (from, size) = (frame.middle - frame.half, frame.half * 2.0);
+        let [x, y, wide, high] = [from.x, from.y, size.x, size.y].map(rounded);
+        let window = SVG::new().set("x", x).set("y", y).set("width", wide).set("height", high);
+        self.add(Group::new().add(window.set("viewBox", (x, y, wide, high)).add(drawn)));
     }
 
     /// A mark at a place.
@@ -95,7 +113,7 @@ impl Sheet {
     pub(crate) fn finish(self) -> String {
         const LEFT: f64 = 24.0;
         const ROW: f64 = 23.0;
-        let Self { size, title, drawn, named } = self;
+        let Self { size, title, drawn, named, .. } = self;
         let mut legend = Group::new().set("class", "legend").set("fill", INK);
         let half = (size.x - 2.0 * LEFT) / 2.0;
         let (mut row, mut is_left) = (0.0, true);

@@ -9,6 +9,9 @@ use crate::report::picture::Kind;
 // Orange for +1 and blue for -1, as in the paper's Figure 1, in hues that colour-blind readers tell apart.
 const POSITIVE: &str = "#d55e00";
 const NEGATIVE: &str = "#0072b2";
+// The same for labels that tell nothing of a front, as they were read far from it.
+const FAINT_POSITIVE: &str = "#f0b78c";
+const FAINT_NEGATIVE: &str = "#a3cbe6";
 
 /// The colour of text, axes and outlines.
 pub(crate) const INK: &str = "#1a1a1a";
@@ -32,11 +35,14 @@ pub(crate) struct Stroke {
 pub(crate) const TRUTH: Stroke = solid("truth", "#000000", 2.2);
 pub(crate) const PAST_TRUTH: Stroke =
     Stroke { class: "past-truth", colour: "#000000", width: 2.2, dashes: "2 5" };
-/// The front as it is mapped.
-pub(crate) const FRONT: Stroke =
-    Stroke { class: "front", colour: "#00784f", width: 2.2, dashes: "9 5" };
+/// The front as it is mapped, and the true one, thin so that it does not hide the map.
+pub(crate) const FRONT: Stroke = solid("front", "#00784f", 1.6);
+pub(crate) const TRUE_FRONT: Stroke =
+    Stroke { class: "truth", colour: "#000000", width: 1.2, dashes: "6 3" };
 pub(crate) const PATH: Stroke = solid("path", "#4a4a4a", 1.1);
 pub(crate) const HEADING: Stroke = solid("heading", "#4a4a4a", 2.6);
+/// All of the area beside a part of it.
+pub(crate) const INSET: Stroke = solid("inset", INK, 1.2);
 pub(crate) const BORDER: Stroke = solid("border", INK, 0.8);
 
 const fn solid(class: &'static str, colour: &'static str, width: f64) -> Stroke {
@@ -81,7 +87,7 @@ impl Fill {
         match self {
             Self::Blank => "#ffffff".to_owned(),
             Self::Outside => "#e4e4e4".to_owned(),
-            Self::Front => SHADES[1].to_owned(),
+            Self::Front => SHADES[2].to_owned(),
             Self::Shade(k) => SHADES[k.min(SHADES.len() - 1)].to_owned(),
             hatched => format!("url(#{})", hatched.class()),
         }
@@ -132,6 +138,13 @@ pub(crate) fn of_label(label: Label) -> &'static str {
     match label {
         Label::Positive => POSITIVE,
         Label::Negative => NEGATIVE,
+    }
+}
+
+pub(crate) fn faint(label: Label) -> &'static str {
+    match label {
+        Label::Positive => FAINT_POSITIVE,
+        Label::Negative => FAINT_NEGATIVE,
     }
 }
 

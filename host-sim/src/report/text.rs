@@ -605,7 +605,9 @@ fn errors(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> Str
         let share = format!("{:.3}%", 100.0 * misclassified);
         table.row(["line that fits best".into(), line(best), String::new(), share]);
     }
-    for &(name, estimate) in estimates {
+    // Where no line explains the labels, the others may be anywhere.
+    let is_line = results.end.fit.is_none() && results.end.diagnosis.is_none();
+    for &(name, estimate) in &estimates[..if is_line { estimates.len() } else { 1 }] {
         let Some(estimate) = estimate else {
             table.line(&format!("{name:<28} none"));
             continue;

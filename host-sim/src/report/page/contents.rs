@@ -40,4 +40,11 @@ impl Chapter {
         let shown = flights.into_iter().map(|(name, recording)| Flight::of(name, recording));
         Self { title: title.into(), about, flights: shown.collect() }
     }
+
+    /// The same with more that holds of it.
+    #[must_use]
+    pub fn noting<'a>(mut self, notes: impl IntoIterator<Item = &'a str>) -> Self {
+        self.about.extend(notes.into_iter().map(str::to_owned));
+        self
+    }
 }

@@ -1,11 +1,36 @@
 // The map of a mission: ground, lines, path and labels at a step.
 
-/** Where the places of an area lie on a drawing this wide. */
-function layout(area, width) {
-  const xs = area.map(([x]) => x);
-  const zs = area.map(([, z]) => z);
-  const [left, right, bottom, top] = [Math.min(...xs), Math.max(...xs), Math.min(...zs), Math.max(...zs)];
-  const margin = { left: 38, right: 12, top: 22, bottom: 34 };
+/** The rectangle around some places. */
+function around(places) {
+  const bounds = { left: Infinity, right: -Infinity, bottom: Infinity, top: -Infinity };
+  for (const [x, z] of places) {
+    Object.assign(bounds, { left: Math.min(bounds.left, x), right: Math.max(bounds.right, x) });
+    Object.assign(bounds, { bottom: Math.min(bounds.bottom, z), top: Math.max(bounds.top, z) });
+  }
+  return bounds;
+}
+
+/** What a map shows: the area, or of a front the track alone if that is small. */
+function shown(flight) {
+  const longest = (it) => Math.max(it.right - it.left, it.top - it.bottom);
+  const area = around(flight.area);
+  if (!flight.follows) return { bounds: area, isPart: false };
+  const track = flight.scenes.flatMap(({ at, motion, front }) => [at, ...(motion?.way ?? []), ...(front?.ends ?? [])]);
+  const part = around([...track, ...flight.given.map((it) => it.at)]);
+  const size = longest(part);
+  if (size === 0 || size > 0.5 * longest(area)) return { bounds: area, isPart: false };
+  const grown = (from, to) => {
+    const half = Math.max(to - from, 0.4 * size) / 2 + 0.1 * size;
+    return [(from + to) / 2 - half, (from + to) / 2 + half];
+  };
+  const [[left, right], [bottom, top]] = [grown(part.left, part.right), grown(part.bottom, part.top)];
+  return { bounds: { left, right, bottom, top }, isPart: true };
+}
+
+/** Where places lie on a drawing this wide. On a narrow one ticks are within the map, which fills the width. */
+function layout({ left, right, bottom, top }, width) {
+  const isNarrow = width < 420;
+  const margin = { left: isNarrow ? 1 : 38, right: isNarrow ? 1 : 12, top: 22, bottom: 34 };
   // What is above the map leaves so much of the window.
   const most = Math.max(240, Math.min(620, width, PAPER.matches ? 620 : innerHeight - 330));
   const room = width - margin.left - margin.right;
@@ -14,6 +39,7 @@ function layout(area, width) {
   const height = margin.top + scale * (top - bottom) + margin.bottom;
   return {
     bounds: { left, right, bottom, top },
+    isNarrow,
     height: Math.ceil(height),
     at: ([x, z]) => [shift + scale * (x - left), margin.top + scale * (top - z)],
   };
@@ -21,25 +47,27 @@ function layout(area, width) {
 
 /** Draws a mission as it was after some step; `from` is the step that was shown before. */
 function drawMap(svg, flight, step, width, from) {
-  const view = layout(flight.area, width);
+  flight.shown ??= shown(flight);
+  const { bounds, isPart } = flight.shown;
+  const view = layout(bounds, width);
   const { at } = view;
   const ring = (places) => through(places.map(at), true);
-  blank(svg, width, view.height);
+  const sheet = blank(svg, width, view.height);
   const scene = flight.scenes[step];
   const past = flight.scenes.slice(0, step + 1);
 
   add(svg, 'path', { class: 'area', d: ring(flight.area) });
   drawGround(svg, scene.ground, at);
+  if (isPart) svg = field(svg, view);
+  drawAxes(sheet, view, width);
   drawFront(svg, past, at);
-  drawAxes(svg, view, width);
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
   add(svg, 'path', { class: 'border', d: ring(flight.area) });
-  if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
-  for (const { ways, is_past } of flight.boundary ?? []) {
-    for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
-  }
+  if (!flight.follows) drawTruth(svg, flight, at);
   if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
 
+  // Along a front labels lie close together: small, few, and below the path and the map, which they must not hide.
+  if (flight.follows) drawMarks(svg, past, at, true);
   const way = past.flatMap((it) => (it.motion ? it.motion.way : [it.at]));
   add(svg, 'path', { class: 'path', d: through(way.map(at)) });
   if (scene.motion) {
@@ -53,21 +81,66 @@ function drawMap(svg, flight, step, width, from) {
     const isRight = x > width - 40;
     add(svg, 'text', { class: 'name', x: x + (isRight ? -10 : 10), y: y + (y < 26 ? 16 : -7), 'text-anchor': isRight ? 'end' : 'start' }, `p${number + 1}`);
   }
-  // Along a front labels lie close together: small, and below its map, which they must not hide.
-  const [size, about] = flight.follows ? [2.4, 5] : [4.5, 9];
-  for (const { motion, at: place } of past) {
+  if (!flight.follows) drawMarks(svg, past, at, false);
+  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
+  if (flight.follows) drawTruth(svg, flight, at);
+  drawRobot(svg, flight, step, at, from);
+  if (isPart) drawInset(sheet, flight, view);
+}
+
+function drawTruth(svg, flight, at) {
+  if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
+  for (const { ways, is_past } of flight.boundary ?? []) {
+    for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
+  }
+}
+
+/** What was read. Of a front one mark of a kind in each cell of some pixels is enough. */
+function drawMarks(svg, scenes, at, follows) {
+  const [size, about] = follows ? [2.4, 4.2] : [4.5, 9];
+  const taken = new Set();
+  const hasSpace = ([x, y], kind, cell) => {
+    const key = `${kind} ${Math.floor(x / cell)} ${Math.floor(y / cell)}`;
+    return !follows || !(taken.has(key) || !taken.add(key));
+  };
+  for (const { motion, at: place } of scenes) {
     if (!motion) continue;
     const spot = at(place);
-    if (motion.truly) {
-      add(svg, 'path', { class: 'slip', d: through([spot, at(motion.truly)]) });
-      cross(svg, at(motion.truly), 'truly');
+    const { label, truly, is_wrong, sought } = motion;
+    if (truly && hasSpace(spot, 'truly', 12)) {
+      add(svg, 'path', { class: 'slip', d: through([spot, at(truly)]) });
+      cross(svg, at(truly), 'truly');
     }
-    if (motion.label === null) add(svg, 'circle', { class: 'unread', cx: spot[0], cy: spot[1], r: size - 1 });
-    else symbol(svg, spot, motion.label, size);
-    if (motion.is_wrong) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: about });
+    if (label === null) {
+      if (!follows) add(svg, 'circle', { class: 'unread', cx: spot[0], cy: spot[1], r: size - 1 });
+    } else if (hasSpace(spot, sought ? `sought ${label}` : label, 8)) {
+      symbol(svg, spot, label, size).classList.toggle('sought', Boolean(sought));
+    }
+    if (is_wrong && hasSpace(spot, 'wrong', 12)) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: about });
   }
-  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
-  drawRobot(svg, flight, step, at, from);
+}
+
+/** A part of a drawing at which what is drawn there is cut off. */
+function field(svg, { bounds: { left, right, bottom, top }, at }) {
+  const [[x, y], [end, base]] = [at([left, top]), at([right, bottom])];
+  add(svg, 'rect', { class: 'area border', x, y, width: end - x, height: base - y });
+  return add(svg, 'svg', { x, y, width: end - x, height: base - y, viewBox: `${x} ${y} ${end - x} ${base - y}` });
+}
+
+/** All of the area in a corner that the track leaves free, and the part of it that the map shows. */
+function drawInset(svg, flight, { bounds, at }) {
+  const area = around(flight.area);
+  const scale = 90 / Math.max(area.right - area.left, area.top - area.bottom);
+  const [wide, high] = [scale * (area.right - area.left), scale * (area.top - area.bottom)];
+  const [[x, y], [end, base]] = [at([bounds.left, bounds.top]), at([bounds.right, bounds.bottom])];
+  const spots = flight.scenes.map((it) => at(it.at));
+  const hidden = ([left, top]) => spots.filter(([sx, sy]) => sx > left && sx < left + wide && sy > top && sy < top + high).length;
+  const corners = [[end - wide - 8, y + 8], [end - wide - 8, base - high - 8], [x + 8, y + 8], [x + 8, base - high - 8]];
+  const [left, top] = corners.reduce((best, it) => (hidden(it) < hidden(best) ? it : best));
+  const spot = ([px, pz]) => [left + scale * (px - area.left), top + scale * (area.top - pz)];
+  add(svg, 'path', { class: 'area border', d: through(flight.area.map(spot), true) });
+  const part = [[bounds.left, bounds.top], [bounds.right, bounds.top], [bounds.right, bounds.bottom], [bounds.left, bounds.bottom]];
+  add(svg, 'path', { class: 'inset', d: through(part.map(spot), true) });
 }
 
 /** The map of a front by its pieces: a new one begins where the front was not known. */
@@ -123,17 +196,21 @@ function drawAxes(svg, view, width) {
   for (const x of ticks(left, right, Math.max(2, Math.min(10, width / 70)))) {
     const [px, py] = at([x, top]);
     add(svg, 'path', { class: 'grid', d: through([[px, py], [px, base]]) });
-    add(svg, 'text', { class: 'tick', x: px, y: base + 15, 'text-anchor': 'middle' }, figure(x, x % 1 ? 1 : 0));
+    const anchor = px > width - 16 ? 'end' : px < 16 ? 'start' : 'middle';
+    add(svg, 'text', { class: 'tick', x: px, y: base + 15, 'text-anchor': anchor }, figure(x, x % 1 ? 1 : 0));
   }
   for (const z of ticks(bottom, top, Math.max(2, Math.min(10, view.height / 60)))) {
     const [px, py] = at([left, z]);
     add(svg, 'path', { class: 'grid', d: through([[px, py], at([right, z])]) });
-    add(svg, 'text', { class: 'tick', x: px - 6, y: py + 4, 'text-anchor': 'end' }, figure(z, z % 1 ? 1 : 0));
+    if (view.isNarrow && py > base - 8) continue;
+    const place = view.isNarrow ? { x: px + 3, y: py - 3 } : { x: px - 6, y: py + 4, 'text-anchor': 'end' };
+    add(svg, 'text', { class: 'tick', ...place }, figure(z, z % 1 ? 1 : 0));
   }
   const [end] = at([right, bottom]);
   add(svg, 'text', { class: 'tick', x: end, y: base + 29, 'text-anchor': 'end' }, 'x, m');
   const [start, peak] = at([left, top]);
-  add(svg, 'text', { class: 'tick', x: start - 6, y: peak - 8, 'text-anchor': 'end' }, 'z, m');
+  const name = view.isNarrow ? { x: start + 3 } : { x: start - 6, 'text-anchor': 'end' };
+  add(svg, 'text', { class: 'tick', ...name, y: peak - 8 }, 'z, m');
 }
 
 /** A label's symbol: a disc for +1, a square for -1, a diamond on the line itself. */

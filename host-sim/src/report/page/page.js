@@ -40,7 +40,7 @@ function stage({ flights }, section) {
 function panel(row, flight, ranges, steps, id) {
   const article = add(row, 'article', { class: 'flight', 'aria-labelledby': id });
   add(article, 'h3', { id }, flight.planner);
-  const figure = add(article, 'figure', { class: 'map' });
+  const figure = add(article, 'figure', { class: flight.follows ? 'map follows' : 'map' });
   const map = add(figure, 'svg', { role: 'img' });
   legend(figure, flight);
   const side = add(article, 'div', { class: 'side' });
@@ -79,7 +79,7 @@ function panel(row, flight, ranges, steps, id) {
 /** The pixels that a drawing has for its width; on paper they are larger, so there are fewer. */
 function widthOf(element) {
   if (PAPER.matches) return element.closest('.charts') ? 230 : 400;
-  return Math.max(200, Math.floor(element.clientWidth));
+  return Math.max(200, Math.floor(element.querySelector(':scope > svg').getBoundingClientRect().width));
 }
 
 /** What happened at a step, in words. */
@@ -109,10 +109,15 @@ function legend(figure, flight) {
   const box = (name) => (svg) => add(svg, 'rect', { class: name, x: 1, y: 1, width: 24, height: 16 });
   item('label +1', (svg) => symbol(svg, [13, 9], 1, 5));
   item('label \u22121', (svg) => symbol(svg, [13, 9], -1, 5));
-  item('p1, p2, \u2026: given points', (svg) => { symbol(svg, [7, 9], 1, 6); symbol(svg, [20, 9], -1, 6); });
+  const sought = motions.filter((it) => it.sought && it.label);
+  for (const label of [1, -1].filter((it) => sought.some((motion) => motion.label === it))) {
+    const words = `label ${label > 0 ? '+1' : '\u22121'}, while the front was sought`;
+    item(words, (svg) => symbol(svg, [13, 9], label, 3).classList.add('sought'));
+  }
+  if (flight.given.length > 0) item('p1, p2, \u2026: given points', (svg) => { symbol(svg, [7, 9], 1, 6); symbol(svg, [20, 9], -1, 6); });
   if (motions.some((it) => it.label === 0)) item('exactly on the line', (svg) => symbol(svg, [13, 9], 0, 5));
   if (motions.some((it) => it.is_wrong)) item('a wrong label', (svg) => add(svg, 'circle', { class: 'wrong', cx: 13, cy: 9, r: 8 }));
-  if (motions.some((it) => it.label === null)) item('no label read', (svg) => add(svg, 'circle', { class: 'unread', cx: 13, cy: 9, r: 3.5 }));
+  if (!flight.follows && motions.some((it) => it.label === null)) item('no label read', (svg) => add(svg, 'circle', { class: 'unread', cx: 13, cy: 9, r: 3.5 }));
   if (flight.scenes[0].ground.certain) {
     item('certain to be +1', box('certain above'));
     item('certain to be \u22121', box('certain below'));
@@ -136,6 +141,7 @@ function legend(figure, flight) {
   item('robot and its heading', (svg) => { add(svg, 'circle', { class: 'halo', cx: 8, cy: 9, r: 7 }); add(svg, 'path', { class: 'bow', d: 'M16 5L24 9L16 13Z' }); });
   if (motions.some((it) => it.truly)) item('where it truly was', (svg) => cross(svg, [13, 9], 'truly'));
   if (motions.some((it) => it.target)) item('where the motion should have ended', (svg) => cross(svg, [13, 9], 'target'));
+  if ((flight.shown ??= shown(flight)).isPart) item('inset: all of the area, and the part shown', box('inset'));
   if (flight.keep_outs.length > 0) item('kept out of', box('keep-out'));
 }
 

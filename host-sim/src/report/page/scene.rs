@@ -138,6 +138,9 @@ pub(crate) struct SeenFront {
 /// A motion, and what was read at its end.
 #[derive(Debug, Serialize)]
 pub(crate) struct Moved {
+    /// Whether a front was sought.
+    #[serde(skip_serializing_if = "is_false")]
+    sought: bool,
     /// What it answers, in short.
     #[serde(skip)]
     pub(crate) problem: String,
@@ -352,6 +355,8 @@ impl Stage<'_> {
         let place = |at: Point2<f64>| self.rounding.place(at);
         let [target, end] = [step.motion.target.site, step.pose.site];
         Moved {
+            sought: !self.recording.mission.algorithm.seeks_line()
+                && result.problem.as_deref() == Some("seek"),
             problem: words::problem(result),
             motion: words::motion(&self.recording.mission, result),
             way: stop.way.iter().copied().map(place).collect(),
@@ -396,6 +401,11 @@ impl GroundRecord {
         }
     }
 }
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
+const fn is_false(it: &bool) -> bool {
+    !*it
+}
+
 /// Whether the front that is known after a step is beside the robot. While this drives back to where it began, that place
 /// stays what it knows.
 fn is_beside(steps: &[StepResult], step: usize) -> bool {
