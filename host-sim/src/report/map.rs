@@ -362,7 +362,7 @@ impl Map {
                 };
                 let is_small = self.follows && ring == Ring::Wrong;
                 let ring = if is_small { Look::Wrong } else { Look::Ringed(ring) };
-                if self.has_space(ring, at, 12.0) {
+                if self.has_space(ring, at, 16.0) {
                     self.sheet.mark(ring, at);
                 }
                 self.sheet.name(ring, meaning);

@@ -135,6 +135,7 @@ impl Sheet {
             .set("width", wide)
             .set("height", high)
             .set("viewBox", (0.0, 0.0, wide, high))
+            .set("style", "max-width:100%;height:auto") // the width of a phone
             .set("role", "img")
             .set("font-family", "Arial, Helvetica, 'DejaVu Sans', sans-serif")
             .add(Title::new(title))

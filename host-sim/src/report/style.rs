@@ -36,9 +36,9 @@ pub(crate) const TRUTH: Stroke = solid("truth", "#000000", 2.2);
 pub(crate) const PAST_TRUTH: Stroke =
     Stroke { class: "past-truth", colour: "#000000", width: 2.2, dashes: "2 5" };
 /// The front as it is mapped, and the true one, thin so that it does not hide the map.
-pub(crate) const FRONT: Stroke = solid("front", "#00784f", 1.6);
+pub(crate) const FRONT: Stroke = solid("front", "#00784f", 2.2);
 pub(crate) const TRUE_FRONT: Stroke =
-    Stroke { class: "truth", colour: "#000000", width: 1.2, dashes: "6 3" };
+    Stroke { class: "truth", colour: "#000000", width: 1.0, dashes: "4 5" };
 pub(crate) const PATH: Stroke = solid("path", "#4a4a4a", 1.1);
 pub(crate) const HEADING: Stroke = solid("heading", "#4a4a4a", 2.6);
 /// All of the area beside a part of it.

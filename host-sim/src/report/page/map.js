@@ -116,7 +116,7 @@ function drawMarks(svg, scenes, at, follows) {
     } else if (hasSpace(spot, sought ? `sought ${label}` : label, 8)) {
       symbol(svg, spot, label, size).classList.toggle('sought', Boolean(sought));
     }
-    if (is_wrong && hasSpace(spot, 'wrong', 12)) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: about });
+    if (is_wrong && hasSpace(spot, 'wrong', 16)) add(svg, 'circle', { class: 'wrong', cx: spot[0], cy: spot[1], r: about });
   }
 }
 
@@ -202,7 +202,8 @@ function drawAxes(svg, view, width) {
   for (const z of ticks(bottom, top, Math.max(2, Math.min(10, view.height / 60)))) {
     const [px, py] = at([left, z]);
     add(svg, 'path', { class: 'grid', d: through([[px, py], at([right, z])]) });
-    if (view.isNarrow && py > base - 8) continue;
+    const [, peak] = at([left, top]);
+    if (view.isNarrow && (py > base - 8 || py < peak + 14)) continue;
     const place = view.isNarrow ? { x: px + 3, y: py - 3 } : { x: px - 6, y: py + 4, 'text-anchor': 'end' };
     add(svg, 'text', { class: 'tick', ...place }, figure(z, z % 1 ? 1 : 0));
   }

@@ -107,8 +107,11 @@ function legend(figure, flight) {
   const motions = flight.scenes.flatMap((scene) => scene.motion ?? []);
   const stroke = (name) => (svg) => add(svg, 'path', { class: name, d: 'M1 9H25' });
   const box = (name) => (svg) => add(svg, 'rect', { class: name, x: 1, y: 1, width: 24, height: 16 });
-  item('label +1', (svg) => symbol(svg, [13, 9], 1, 5));
-  item('label \u22121', (svg) => symbol(svg, [13, 9], -1, 5));
+  const read = motions.filter((it) => !it.sought && it.label);
+  if (!flight.follows || read.length > 0) {
+    item('label +1', (svg) => symbol(svg, [13, 9], 1, 5));
+    item('label \u22121', (svg) => symbol(svg, [13, 9], -1, 5));
+  }
   const sought = motions.filter((it) => it.sought && it.label);
   for (const label of [1, -1].filter((it) => sought.some((motion) => motion.label === it))) {
     const words = `label ${label > 0 ? '+1' : '\u22121'}, while the front was sought`;
@@ -132,11 +135,12 @@ function legend(figure, flight) {
   }
   if (flight.truth) item('the true line', stroke('truth'));
   for (const { name, is_past } of flight.boundary ?? []) item(`the ${name}`, stroke(is_past ? 'truth past' : 'truth'));
-  if (flight.follows) {
+  if (flight.scenes.some((it) => it.front)) {
     const moves = (flight.boundary ?? []).some((it) => it.is_past);
     item(`the front as it ${moves ? 'was when it was' : 'is'} mapped`, stroke('estimate'));
     item('it lies here with a probability of 90 %', box('front'));
-  } else item(flight.estimate, stroke('estimate'));
+  }
+  if (!flight.follows) item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });
   item('robot and its heading', (svg) => { add(svg, 'circle', { class: 'halo', cx: 8, cy: 9, r: 7 }); add(svg, 'path', { class: 'bow', d: 'M16 5L24 9L16 13Z' }); });
   if (motions.some((it) => it.truly)) item('where it truly was', (svg) => cross(svg, [13, 9], 'truly'));
