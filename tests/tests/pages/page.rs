@@ -13,6 +13,7 @@ use host_sim::report::page::{Chapter, Page};
 use tests::build;
 
 const CAR: &str = include_str!("../../../host-sim/scenarios/car-among-keep-outs.toml");
+const SPILL: &str = include_str!("../../../host-sim/scenarios/begin-spill.toml");
 
 /// Where Debian's package puts it, unless `CHROMIUM` says another place.
 const CHROMIUM: &str = "/usr/bin/chromium";
@@ -25,6 +26,11 @@ fn examples_in_a_browser() {
 #[test]
 fn a_car_in_a_browser() {
     look_at("car", car);
+}
+
+#[test]
+fn a_spill_in_a_browser() {
+    look_at("spill", spill);
 }
 
 fn look_at(name: &str, page: fn() -> String) {
@@ -68,7 +74,18 @@ fn examples() -> String {
 
 /// One mission: a polygon, keep-outs, arcs, positions that err, steps without a label.
 fn car() -> String {
-    let mission = scenario::parse("car", CAR, Overrides::default()).expect("a good file");
+    page("car", CAR)
+}
+
+/// One mission in a part of its area: a spill that is sought and mapped.
+fn spill() -> String {
+    let far = ["x = [0.0, 100.0], z = [0.0, 80.0]", "x = [-100.0, 100.0], z = [-100.0, 80.0]"];
+    let known = ["oracle = []", "oracle = [{ x = 60.0, z = 45.0, label = 1 }]"];
+    page("spill", &SPILL.replace(far[0], far[1]).replace(known[0], known[1]))
+}
+
+fn page(name: &str, text: &str) -> String {
+    let mission = scenario::parse(name, text, Overrides::default()).expect("a good file");
     let recording = Recording::of(&mission).expect("no contradiction");
-    Page::new("car", vec![Chapter::new("A car", [("look-ahead", &recording)])]).html()
+    Page::new(name, vec![Chapter::new("A mission", [("it", &recording)])]).html()
 }

@@ -86,6 +86,7 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
   const up = linear(range, [height - bottom, top]);
   const limited = (value) => Math.min(height - bottom, Math.max(top, up(value)));
   drawScales(svg, chart, range, steps, across, up, width);
+  add(svg, 'path', { class: 'axis', d: through([[across(step), top], [across(step), height - bottom]]) });
   const breadth = Math.max(1.5, Math.min(9, (across(1) - across(0)) * 0.6));
   for (const [number, scene] of flight.scenes.entries()) {
     const when = number === step ? ' now' : number > step ? ' later' : '';

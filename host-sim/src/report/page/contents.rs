@@ -41,10 +41,10 @@ impl Chapter {
         Self { title: title.into(), about, flights: shown.collect() }
     }
 
-    /// The same with more that holds of it.
+    /// The same with a note on how to read it.
     #[must_use]
-    pub fn noting<'a>(mut self, notes: impl IntoIterator<Item = &'a str>) -> Self {
-        self.about.extend(notes.into_iter().map(str::to_owned));
+    pub fn noting(mut self, note: Option<&str>) -> Self {
+        self.about.extend(note.map(str::to_owned));
         self
     }
 }

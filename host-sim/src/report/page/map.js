@@ -27,9 +27,9 @@ function shown(flight) {
   return { bounds: { left, right, bottom, top }, isPart: true };
 }
 
-/** Where places lie on a drawing this wide. On a narrow one ticks are within the map, which fills the width. */
+/** Where places lie on a drawing this wide. On a phone ticks are within the map, which fills the width. */
 function layout({ left, right, bottom, top }, width) {
-  const isNarrow = width < 420;
+  const isNarrow = innerWidth < 640 && !PAPER.matches;
   const margin = { left: isNarrow ? 1 : 38, right: isNarrow ? 1 : 12, top: 22, bottom: 34 };
   // What is above the map leaves so much of the window.
   const most = Math.max(240, Math.min(620, width, PAPER.matches ? 620 : innerHeight - 330));
