@@ -13,6 +13,7 @@ use crate::mission::definition::{Mission, Table};
 use crate::mission::map::State;
 use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
+use crate::mission::results::StepResult;
 pub use crate::report::ground::Ground;
 use crate::report::ribbon::Ribbon;
 use crate::world::extent::around;
@@ -275,20 +276,6 @@ impl Picture {
             let refutes = (refuted == Some(number)).then_some(Ring::Refutes);
             Some(Dot { ring: refutes.or(dot.ring), ..dot })
         });
-        let mut from = Point2::from(mission.start.site);
-        let stops = results.steps.iter().map(|step| Stop {
-            way: {
-                let to = Point2::new(step.pose.x, step.pose.z);
-                let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
-                let turn = if is_car { step.action.w.into() } else { 0.0 };
-                arc(std::mem::replace(&mut from, to), to, turn)
-            },
-            at: Point2::new(step.pose.x, step.pose.z),
-            truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
-            heading: step.pose.heading,
-            sensed: step.label.is_some_and(|label| label != 0),
-            lacks_reading: step.label.is_none() && step.expected.is_some(),
-        });
         Self {
             title: title.to_owned(),
             note: Some(note(recording)),
@@ -297,7 +284,7 @@ impl Picture {
             is_refuted: audit.is_some_and(|it| it.refuted.is_some()),
             samples: samples.zip(numbers).map(dot).chain(audited).collect(),
             given,
-            path: Some((Point2::from(mission.start.site), stops.collect())),
+            path: Some((Point2::from(mission.start.site), stops(recording))),
             truth: Truth::of(mission, recording.steps.len()),
             lines,
             follows,
@@ -355,6 +342,25 @@ impl Picture {
         let all = Self::of(title, recording);
         Some(Self { note: Some(note), ground: Ground::Plain, path: None, lines, ..all })
     }
+}
+
+/// The ends of the steps.
+fn stops(Recording { mission, results, .. }: &Recording) -> Vec<Stop> {
+    let mut from = Point2::from(mission.start.site);
+    let stop = |step: &StepResult| Stop {
+        way: {
+            let to = Point2::new(step.pose.x, step.pose.z);
+            let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
+            let turn = if is_car { step.action.w.into() } else { 0.0 };
+            arc(std::mem::replace(&mut from, to), to, turn)
+        },
+        at: Point2::new(step.pose.x, step.pose.z),
+        truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
+        heading: step.pose.heading,
+        sensed: step.label.is_some_and(|label| label != 0),
+        lacks_reading: step.label.is_none() && step.expected.is_some(),
+    };
+    results.steps.iter().map(stop).collect()
 }
 
 fn as_line([a, b, c]: [f64; 3]) -> Option<Line> {
