@@ -259,7 +259,9 @@ impl Flight {
         let stage = Stage { recording, rounding, estimate };
         let mut sums = Sums::default();
         let scenes = recording.known().zip(iter::once(None).chain(taken)).map(|(belief, taken)| {
-            let bits = bits(belief);
+            // Of a front nothing is known before it is found.
+            let of_front = || taken.map_or(0.0, |it: Taken| it.result.bits);
+            let bits = if belief.front().is_some() { of_front() } else { bits(belief) };
             sums.rise = bits - sums.bits;
             sums.bits = bits;
             let expected = taken.and_then(|it| it.result.expected);
