@@ -1,8 +1,11 @@
 //! The command line: commands and flags. The contract is in docs/reference/command-line.md, whose tables of flags are made
 //! from these. Each command has a file of its own.
 
+use std::any::TypeId;
+use std::path::PathBuf;
+
 use anyhow::Result;
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::cli::campaign::{CampaignArgs, campaign};
 use crate::cli::completions::{Completions, completions};
@@ -36,6 +39,18 @@ pub struct Cli {
     pub(crate) verbose: bool,
 }
 
+fn with_hyphens(command: clap::Command) -> clap::Command {
+    let with_hyphen = |arg: clap::Arg| {
+        let is_file = arg.get_value_parser().type_id() == TypeId::of::<PathBuf>();
+        match arg.get_action().takes_values() {
+            true if arg.is_positional() => arg.allow_negative_numbers(true),
+            true if !is_file => arg.allow_hyphen_values(true),
+            _ => arg,
+        }
+    };
+    command.mut_args(with_hyphen).mut_subcommands(with_hyphens)
+}
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Run one mission
@@ -63,6 +78,16 @@ pub(crate) enum Command {
 }
 
 impl Cli {
+    /// Reads the command line. A value may begin with a hyphen, so that a negative number is refused by its flag; a file's
+    /// name may not.
+    ///
+    /// # Errors
+    /// Help, a version, or what is wrong.
+    pub fn read() -> Result<Self, clap::Error> {
+        let matches = with_hyphens(Self::command()).try_get_matches()?;
+        Self::from_arg_matches(&matches)
+    }
+
     /// Does what was asked.
     ///
     /// # Errors

@@ -38,7 +38,7 @@ pub(crate) struct CampaignFlags {
             ("fronts", ArgPredicate::IsPresent, "300"),
             ("patches", ArgPredicate::IsPresent, "200"),
         ]),
-        value_parser = clap::value_parser!(u64).range(1..)
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000)
     )]
     pub(crate) fields: u64,
     /// Steps in each, 1 to 64; where labels are true, or with --labels or --price, 1 to 10000
@@ -105,11 +105,11 @@ pub(crate) struct CampaignFlags {
     #[arg(long, value_name = "METRES")]
     tolerance: Option<f64>,
     /// Added to the tolerance: how far the boundary may be from a straight line, metres (the fields' are straight)
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
     #[serde(default, skip_serializing_if = "is_none")]
     bend: f64,
     /// Added to the tolerance: how far the line may move during a mission, metres (the fields' do not move)
-    #[arg(long, value_name = "METRES", default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "METRES", default_value_t = 0.0)]
     #[serde(default, skip_serializing_if = "is_none")]
     drift: f64,
     /// The sides of the fields, metres: the standard fields are stretched to them [default: 20,20]
@@ -126,7 +126,7 @@ pub(crate) struct CampaignFlags {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,
     /// Bits that a label must be expected to carry, else it is not read (lookahead) [default: 0]
-    #[arg(long, value_name = "BITS", allow_hyphen_values = true)]
+    #[arg(long, value_name = "BITS")]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     worth: Option<f64>,
     /// Labels in each at most; then missions are compared by labels and not by steps

@@ -1,13 +1,12 @@
 //! `figure`: the paper's figures, from what is computed here.
 
-use std::fs;
 use std::path::PathBuf;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, bail};
 use clap::Args;
 
 use crate::cli::help;
-use crate::output::file::prepare;
+use crate::output::file::{make_folder, prepare};
 use crate::report::paper::{FIGURES, figure as draw};
 
 #[derive(Debug, Args)]
@@ -44,9 +43,7 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<String> {
         Which::One(number) => number..=number,
         Which::All => 1..=FIGURES,
     };
-    let folder = args.out.display();
-    fs::create_dir_all(&args.out)
-        .with_context(|| format!("--out: {folder}: expected a place to make a folder"))?;
+    make_folder("--out: ", &args.out)?;
     let places: [_; MOST] = std::array::from_fn(|k| {
         let number = k as u32 + 1;
         let name = format!("paper-figure-{number}.svg");

@@ -45,7 +45,7 @@ pub(crate) struct FlyArgs {
     #[arg(long, value_name = "NAME|channel:N")]
     label: Source,
     /// A value above it is +1, any other -1 [default: 0, of channels 1500 us]
-    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    #[arg(long, value_name = "VALUE")]
     threshold: Option<f64>,
     /// The vehicle's system id
     #[arg(long, value_name = "ID", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..))]

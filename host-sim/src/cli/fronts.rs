@@ -29,7 +29,7 @@ pub(crate) struct FrontsFlags {
     #[arg(long, conflicts_with_all = MEANINGLESS)]
     pub(crate) fronts: bool,
     /// The follower is told this multiple of each front's speed (track) [default: 1]
-    #[arg(long, value_name = "FACTOR", requires = "fronts", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", requires = "fronts")]
     told_speed: Option<f64>,
 }
 

@@ -15,6 +15,9 @@ Exit status:
        what is known: what was flown until then is printed and written
   129, 130, 143    ended by SIGHUP, SIGINT (Ctrl-C) or SIGTERM; no file is left half written
 
+Files: what a command computes (--figure, --report, --trace, --mcap, --map, --geojson, --timing) replaces a file that is
+there. What took someone's time does not: a scenario (init) unless --force says so, and the rows of a campaign (--csv).
+
 Colours and progress bars are for terminals alone; NO_COLOR=1 turns colours off there too.";
 
 pub(crate) const RUN: &str = "\

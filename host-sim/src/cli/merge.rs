@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write as _};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use clap::Args;
 
 use crate::campaign::ensemble::{Campaign, Measure};
@@ -17,6 +17,7 @@ use crate::cli::passage::{Destination, Passage};
 use crate::cli::told::{Opening, tell};
 use crate::output::checksum::Checksum;
 use crate::output::file::{Output, place_for, prepare};
+use crate::output::kind;
 use crate::output::partial::{check_free, with_suffix};
 
 #[derive(Debug, Args)]
@@ -69,8 +70,10 @@ struct Recorded<'a> {
 /// Reads the record of a shard, and whether it is the file's.
 fn read<'a>(path: &'a Path, record: &Path) -> Result<Recorded<'a>> {
     let name = record.display();
-    let text = fs::read_to_string(record)
-        .with_context(|| format!("{name}: expected the record of {}", path.display()))?;
+    let text = fs::read_to_string(record).map_err(|error| {
+        let (found, rows) = (kind::unread(&error), path.display());
+        anyhow!("{name}: found {found}, expected the record of {rows}")
+    })?;
     let record = CampaignRecord::of_shard(&text).with_context(|| name.to_string())?;
     let shard = path.display();
     let mut checksum = Checksum::default();

@@ -28,3 +28,4 @@ mod replay;
 mod run;
 mod size;
 mod told;
+pub mod wrong_flag;

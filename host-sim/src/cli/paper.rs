@@ -1,15 +1,14 @@
 //! The bare command: the paper's two examples. Each is flown as printed, as the planners here fly it by default, and by
 //! look-ahead.
 
-use std::fs;
 use std::path::Path;
 
-use anyhow::{Context as _, Result};
+use anyhow::Result;
 
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
-use crate::output::file::prepare;
+use crate::output::file::{make_folder, prepare};
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
@@ -142,7 +141,7 @@ impl Flight {
 /// Flies all, writes their figures, and tells what came of them.
 pub(crate) fn tell() -> Result<String> {
     const FIGURES: usize = FLIGHTS.len() + 1;
-    fs::create_dir_all("out").context("out: expected a place to make a folder")?;
+    make_folder("", Path::new("out"))?;
     let names: [_; FIGURES + 1] = std::array::from_fn(|k| match k {
         FIGURES => REPORT,
         _ => FLIGHTS.get(k).map_or(CANDIDATES, |flight| flight.figure),

@@ -23,7 +23,7 @@ pub(crate) struct PatchesFlags {
     #[arg(long, conflicts_with_all = ["fronts", "steps", "algorithm", "compare"])]
     pub(crate) patches: bool,
     /// The planner is told this multiple of each patch's radius [default: 1]
-    #[arg(long, value_name = "FACTOR", requires = "patches", allow_hyphen_values = true)]
+    #[arg(long, value_name = "FACTOR", requires = "patches")]
     told_patch: Option<f64>,
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct ReferenceArgs {
     /// The mission, a TOML file
     pub(crate) scenario: PathBuf,
     /// Motions in a sequence
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u32).range(1..=12))]
     pub(crate) horizon: u32,
     /// What a line costs, where labels are true [default: slope]
     #[arg(long, value_enum, value_name = "COST")]
@@ -46,6 +46,7 @@ pub(crate) struct ReferenceArgs {
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<String> {
     let name = plain::name(&args.scenario.display().to_string());
     let mut mission = scenario::read(&args.scenario, Overrides::default())?;
+    mission.warn(&name);
     if args.speed_step.is_some() || args.turn_step.is_some() {
         mission.vehicle =
             with_steps(mission.vehicle, args.speed_step, args.turn_step, mission.algorithm)?;

@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow};
 use clap::Args;
-use planner_core::{Front, Tolerance};
+use planner_core::Front;
 
 use crate::cli::done::Done;
 use crate::cli::format::Format;
 use crate::cli::help;
+use crate::mission::scenario;
 use crate::output::file::{json, prepare};
 use crate::output::notes::warn;
 use crate::replay::answer::Trust;
@@ -19,6 +20,7 @@ use crate::replay::delimiter::Delimiter;
 use crate::replay::front_map::FrontMap;
 use crate::replay::record::Replay;
 use crate::replay::rows::Layout;
+use crate::world::errors::Errors;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::REPLAY)]
@@ -34,7 +36,7 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "NAME", value_parser = Delimiter::from_str)]
     pub(crate) delimiter: Option<Delimiter>,
     /// Labels are measured values: above this they are +1, else -1
-    #[arg(long, value_name = "V", value_parser = threshold, allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", value_parser = threshold)]
     pub(crate) threshold: Option<f64>,
     /// Refuse a row without a position or a label; else such rows are skipped and counted. Also end with exit status 1
     /// if no straight line explains the labels, or --p is too high for them, or with --front if the front is not known in
@@ -45,17 +47,17 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "EPSG:N", value_parser = Crs::from_str)]
     pub(crate) crs: Option<Crs>,
     /// Take positions about this place, in the file's own coordinates; the middle of the data where they are far away
-    #[arg(long, value_name = "X,Z", value_parser = origin, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Z", value_parser = origin)]
     pub(crate) origin: Option<[f64; 2]>,
     /// Labels are true with this probability, above 0.5
-    #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true)]
+    #[arg(long, value_name = "P", value_parser = probability)]
     pub(crate) p: Option<f64>,
     /// Positions may be off by so many metres
-    #[arg(long, value_name = "METRES", value_parser = tolerance, allow_hyphen_values = true)]
+    #[arg(long, value_name = "METRES", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
     /// Map a front that bends and moves along the rows, as a recorded track: the radius of its tightest bend, metres
     /// (inf: straight), and how far it may move from one row to the next, metres
-    #[arg(long, value_name = "RADIUS[,SPEED]", value_parser = front, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RADIUS[,SPEED]", value_parser = front)]
     pub(crate) front: Option<Front>,
     /// Write a figure here
     #[arg(long, value_name = "FILE.svg")]
@@ -83,26 +85,23 @@ fn threshold(text: &str) -> Result<f64> {
 }
 
 fn probability(text: &str) -> Result<f64> {
-    match text.parse::<f64>() {
-        Ok(p) if p > 0.5 && p <= 1.0 => Ok(p),
-        _ => bail!("expected a number above 0.5 and at most 1"),
-    }
+    scenario::told("--p", text.parse()?)
 }
 
 fn tolerance(text: &str) -> Result<f64> {
-    let metres = text.parse::<f64>().ok().filter(|metres| Tolerance::new(*metres).is_ok());
-    metres.context("expected metres, 0 to 1024")
+    scenario::position("--tolerance", Some(text.parse()?), Errors::default())
 }
 
 fn front(text: &str) -> Result<Front> {
     let (radius, speed) = text.split_once(',').unwrap_or((text, "0"));
     let number = |what, part: &str| {
         let number = part.trim().parse::<f64>();
-        number.map_err(|_| anyhow!("{what}: found {part:?}, expected metres, as 40 or 40,0.02"))
+        number.map_err(|_| anyhow!("found {part:?} for {what}, expected metres, as 40 or 40,0.02"))
     };
     let (radius, speed) = (number("the radius", radius)?, number("the speed", speed)?);
     let front = if radius == f64::INFINITY { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
-    Ok(front?.moving(speed)?)
+    let front = front.and_then(|front| front.moving(speed));
+    front.map_err(|why| anyhow!("found {text}, expected metres, as 40 or 40,0.02 ({why})"))
 }
 
 /// The exit status if no straight line explains the labels, or no front is known, and `--strict` asks for one.

@@ -13,7 +13,6 @@ use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::output::file::{Output, prepare};
-use crate::output::notes::warn;
 use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
@@ -135,9 +134,7 @@ impl Run {
             let planner = mission.algorithm.name();
             bail!("--map: found algorithm {planner}, expected track, which maps a front");
         }
-        if let Some(warning) = mission.warning() {
-            warn(self.name(), warning);
-        }
+        mission.warn(&self.name());
         Ok(mission)
     }
 

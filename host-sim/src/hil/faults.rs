@@ -32,9 +32,9 @@ impl FromStr for Faults {
         for part in text.split(',') {
             let (name, value) = part
                 .split_once('=')
-                .ok_or_else(|| anyhow!("{part:?}: expected name=value, such as drop=0.1"))?;
+                .ok_or_else(|| anyhow!("found {part:?}, expected name=value, such as drop=0.1"))?;
             if named.contains(&name) {
-                bail!("{name}: found twice, expected once");
+                bail!("found {name} twice, expected once");
             }
             named.push(name);
             let place = match name {
@@ -45,18 +45,20 @@ impl FromStr for Faults {
                 "delay" => {
                     let ms = value.strip_suffix("ms").and_then(|ms| ms.parse().ok());
                     let ms = ms.ok_or_else(|| {
-                        anyhow!("delay: found {value}, expected whole milliseconds such as 20ms")
+                        anyhow!(
+                            "found delay={value}, expected whole milliseconds such as delay=20ms"
+                        )
                     })?;
                     faults.delay = Duration::from_millis(ms);
                     continue;
                 }
                 _ => {
-                    bail!("{name}: expected one of drop, cut, corrupt, duplicate and delay")
+                    bail!("found {name}, expected one of drop, cut, corrupt, duplicate and delay")
                 }
             };
             *place = match value.parse() {
                 Ok(p) if (0.0..=1.0).contains(&p) => p,
-                _ => bail!("{name}: found {value}, expected a probability in [0, 1]"),
+                _ => bail!("found {name}={value}, expected a probability in [0, 1]"),
             };
         }
         Ok(faults)

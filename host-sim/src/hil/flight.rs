@@ -5,7 +5,7 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::link::message::{ClockRate, Took};
 use serde::Serialize;
 
@@ -68,7 +68,8 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
         Chip::Board { device, baud } => {
             let read_timeout = Duration::from_millis(100);
             let port = serialport::new(device, *baud).timeout(read_timeout).open();
-            let port = port.with_context(|| format!("{device}: expected a serial port"))?;
+            let port =
+                port.map_err(|why| anyhow!("{device}: found {why}, expected a serial port"))?;
             let reader = port.try_clone().with_context(|| device.clone())?;
             play(player, Cable::new(reader, port, faults, seed))
         }

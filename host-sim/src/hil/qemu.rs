@@ -11,6 +11,7 @@ use anyhow::{Context as _, Result, anyhow, bail};
 
 use crate::hil::firmware::STM32F405;
 use crate::output::interruption::unfinished;
+use crate::output::kind;
 
 /// Emulated nanoseconds that an instruction takes (`-icount shift=6`), so that the emulated clock counts
 /// them.
@@ -46,13 +47,16 @@ const CORES: [Core; 3] = [
 impl Core {
     /// That of a firmware.
     fn of(elf: &Path) -> Result<&'static Self> {
-        let content = fs::read(elf).unwrap_or_default();
+        let content = fs::read(elf);
+        let unread = content.as_ref().err().map(|error| format!("found {}, ", kind::unread(error)));
+        let content = content.unwrap_or_default();
         let named = match content.get(..20) {
             Some([b'\x7f', b'E', b'L', b'F', class, .., machine, 0]) => Some([*class, *machine]),
             _ => None,
         };
         CORES.iter().find(|it| Some(it.named) == named).with_context(|| {
-            let found = if named.is_some() { "found the ELF of another core, " } else { "" };
+            let other = if named.is_some() { "the ELF of another core" } else { "another file" };
+            let found = unread.unwrap_or_else(|| format!("found {other}, "));
             format!(
                 "{}: {found}expected a firmware's ELF, for Arm or RISC-V; `cargo firmware` builds one",
                 elf.display()

@@ -1,6 +1,6 @@
 //! The answer that samples give: one type, however far they are trusted.
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow};
 use nalgebra::{Point2, Vector2};
 use planner_core::error::GivenError;
 use planner_core::{Area, Label, Line, Sample};
@@ -104,6 +104,7 @@ fn exact(file: &SampleFile) -> Result<Answer> {
             let outliers = outliers(&file.samples, &rows, separation::are_separable);
             contradiction(file, index, &outliers, None)
         }
+        GivenError::OneLabel => one_label(file),
         why => {
             anyhow!("{}: {why}; expected samples of both labels, not all on one line", file.name)
         }
@@ -131,7 +132,7 @@ fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
             contradiction(file, index, &outliers, Some(tolerance))
         }
         NoSeparation::OneLabel => {
-            anyhow!("{}: the samples share one label; expected samples of both labels", file.name)
+            one_label(file)
         }
         NoSeparation::AnyDirection => anyhow!(
             "{}: positions that may be off by {tolerance} m leave lines of every direction, expected samples further apart or a smaller --tolerance",
@@ -277,12 +278,21 @@ fn fit(file: &SampleFile, line: &Line, p: f64, tolerance: f64) -> Fit {
     Fit::of(&question).numbered(&rows)
 }
 
+/// Samples that have one label.
+fn one_label(file: &SampleFile) -> anyhow::Error {
+    let label = file.samples.first().map_or(0, |sample| sample.label.sign());
+    let (name, count) = (&file.name, file.samples.len());
+    anyhow!(
+        "{name}: found the label {label:+} alone, in {count} samples, expected samples of both labels"
+    )
+}
+
 /// The middle of the ground around the samples of a file, which has both labels, and half of its size.
 fn ground(file: &SampleFile) -> Result<(Point2<f64>, Vector2<f64>)> {
     let SampleFile { name, samples, .. } = file;
     let has = |label: Label| samples.iter().any(|sample| sample.label == label);
     if !(has(Label::Positive) && has(Label::Negative)) {
-        bail!("{name}: found no two labels, expected samples of both");
+        return Err(one_label(file));
     }
     let area = area_around(samples)
         .with_context(|| format!("{name}: expected samples that are apart from each other"))?;

@@ -37,21 +37,24 @@ impl FromStr for Crs {
         let code: u16 = code.with_context(|| {
             format!("found {text:?}, expected EPSG: and a number, as EPSG:25832")
         })?;
-        let proj = Proj::from_epsg_code(code)
-            .map_err(|error| anyhow!("EPSG:{code} is unknown here: {error}"))?;
+        let proj = Proj::from_epsg_code(code).map_err(|error| {
+            anyhow!("found EPSG:{code}, expected a system that is known here: {error}")
+        })?;
         let degrees = Proj::from_proj_string("+proj=longlat +datum=WGS84 +no_defs")
             .map_err(|error| anyhow!("WGS84: {error}"))?;
         if proj.is_latlong() {
             bail!(
-                "EPSG:{code} is in degrees, expected a system in metres; \
+                "found EPSG:{code}, which is in degrees, expected a system in metres; \
                  latitude and longitude need --columns lat=TITLE,lon=TITLE alone"
             );
         }
         if (proj.to_meter() - 1.0).abs() > 1e-12 {
-            bail!("EPSG:{code} is in {}, expected a system in metres", proj.units());
+            bail!("found EPSG:{code}, which is in {}, expected a system in metres", proj.units());
         }
         if proj.is_geocent() || !proj.has_inverse() || !proj.is_normalized_axis() {
-            bail!("EPSG:{code} has other axes than east and north, expected a map in metres");
+            bail!(
+                "found EPSG:{code}, which has other axes than east and north, expected a map in metres"
+            );
         }
         Ok(Self { code, systems: Arc::new(Systems { own: proj, degrees }) })
     }

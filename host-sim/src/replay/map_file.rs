@@ -8,7 +8,7 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use csv::StringRecord;
 
 use crate::mission::front::VertexRecord;
-use crate::output::plain;
+use crate::output::{kind, plain};
 use crate::report::pieces::ROBOT;
 
 /// The columns of all map files, but for the number.
@@ -58,8 +58,9 @@ impl MapFile {
     /// Names the file and the line, what was found and what was expected.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let name = plain::name(&path.display().to_string());
-        let text =
-            fs::read(path).map_err(|error| anyhow!("{name}: expected a readable file: {error}"))?;
+        let text = fs::read(path).map_err(|error| {
+            anyhow!("{name}: found {}, expected the map of a front", kind::unread(&error))
+        })?;
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&text);
         let mut reader = csv::Reader::from_reader(text);
         let titles = reader.headers().with_context(|| format!("{name}:1"))?.clone();

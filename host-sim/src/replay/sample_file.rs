@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::{Result, anyhow, bail};
 use planner_core::{Label, Sample};
 
-use crate::output::plain;
+use crate::output::{kind, plain};
 use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::rows::{Layout, Rows, Skipped, Traced, Unit};
 use crate::replay::{encoding, geojson_file, gpx_file, swapped, table_file, trace_file};
@@ -36,6 +36,17 @@ pub(crate) struct SampleFile {
     lines: Vec<usize>,
 }
 
+/// Why a file is no table. A scenario may have been meant for another command.
+fn no_table(name: &str, text: &[u8], why: anyhow::Error) -> anyhow::Error {
+    let is_scenario =
+        str::from_utf8(text).is_ok_and(|it| toml::from_str::<toml::Table>(it).is_ok());
+    if is_scenario && kind::of(text) == kind::TOML {
+        let found = kind::TOML;
+        return anyhow!("{name}: found {found}, expected samples; `host-sim run` takes a scenario");
+    }
+    why
+}
+
 impl SampleFile {
     /// Reads a file.
     ///
@@ -43,8 +54,8 @@ impl SampleFile {
     /// Names the file and the line, what was found and what was expected.
     pub(crate) fn read(path: &Path, layout: &Layout) -> Result<Self> {
         let name = plain::name(&path.display().to_string());
-        let text =
-            fs::read(path).map_err(|error| anyhow!("{name}: expected a readable file: {error}"))?;
+        let text = fs::read(path)
+            .map_err(|error| anyhow!("{name}: found {}, expected samples", kind::unread(&error)))?;
         Self::parse(&name, &text, layout)
     }
 
@@ -58,7 +69,7 @@ impl SampleFile {
             Some(b'{') if geojson_file::is_one(text) => geojson_file::parse(name, text, layout),
             Some(b'{') => trace_file::parse(name, text, layout),
             Some(b'<') => gpx_file::parse(name, text, layout),
-            _ => table_file::parse(name, text, layout),
+            _ => table_file::parse(name, text, layout).map_err(|why| no_table(name, text, why)),
         }?;
         Self::of(name, rows, layout)
     }
@@ -74,7 +85,7 @@ impl SampleFile {
             );
         }
         if rows.positions.is_empty() {
-            bail!("{name}: found no samples, expected some of both labels");
+            bail!("{name}: found no {}s with a sample, expected some of both labels", unit.row());
         }
         if rows.is_geographic {
             if let Some(crs) = &layout.crs {

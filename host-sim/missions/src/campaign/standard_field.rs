@@ -135,5 +135,6 @@ pub fn stretched(
         watch: None,
         seeking: Seeking::USUAL,
         until_closed: true,
+        doubts: Vec::new(),
     }
 }

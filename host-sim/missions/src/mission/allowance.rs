@@ -8,7 +8,7 @@ use anyhow::Result;
 use planner_core::{Deviation, Tolerance};
 use serde::{Deserialize, Serialize};
 
-use crate::mission::strict::wrong;
+use crate::mission::strict::beyond;
 
 /// The most of each, metres, as of a tolerance.
 const MOST: f64 = 1024.0;
@@ -41,11 +41,7 @@ impl Allowance {
     pub fn check(&self, prefix: &str) -> Result<()> {
         for (name, metres) in self.parts() {
             if !(0.0..=MOST).contains(&metres) {
-                return wrong(
-                    &format!("{prefix}{name}"),
-                    metres,
-                    "a distance in metres, 0 to 1024",
-                );
+                return beyond(&format!("{prefix}{name}"), metres);
             }
         }
         Ok(())
@@ -58,10 +54,7 @@ impl Allowance {
     pub fn tolerance(&self, field: &str, position_m: f64) -> Result<Tolerance> {
         let &Self { bend, drift, lag } = self;
         let all = Deviation { position_m, bend_m: bend, drift_m: drift, lag_m: lag };
-        all.tolerance().or_else(|_| {
-            let found = sum(position_m, self);
-            wrong(field, found, "a distance in metres, 0 to 1024")
-        })
+        all.tolerance().or_else(|_| beyond(field, sum(position_m, self)))
     }
 
     /// How far given samples must be from the boundary at the start, metres, so that they are true of its straight line

@@ -14,6 +14,7 @@ use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
 use crate::mission::bounds::Bounds;
 use crate::mission::given::{CAPACITY, Given, Lines};
+use crate::output::notes;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
 use crate::world::faults::{Failing, Fault};
@@ -87,6 +88,8 @@ pub struct Mission {
     pub watch: Option<f64>,
     /// Whether it ends once it has gone round a closed front.
     pub until_closed: bool,
+    /// What of the file may be meant otherwise.
+    pub doubts: Vec<String>,
 }
 
 impl Mission {
@@ -178,10 +181,15 @@ impl Mission {
         (self.allowance != Allowance::NONE).then(record)
     }
 
+    /// Warns of what the file called `name` may not mean.
+    pub fn warn(&self, name: &str) {
+        self.doubts.iter().cloned().chain(self.warning()).for_each(|why| notes::warn(name, why));
+    }
+
     /// What the planner is told that does not cover the simulated world, where labels are taken to be true: the
     /// positions' part of the tolerance is smaller than the robot's errors, or an oracle's point is so near to the
     /// boundary that its label may be untrue of the straight line.
-    pub fn warning(&self) -> Option<String> {
+    fn warning(&self) -> Option<String> {
         if self.is_noisy() || !self.algorithm.seeks_line() {
             return None;
         }

@@ -8,7 +8,7 @@ use planner_core::{AnyVehicle, Area, Front, MapPlace};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::strict::{Table, wrong};
+use crate::mission::strict::{Table, beyond, wrong};
 
 /// Of the tightest bend's radius, if the file does not name one: so many of the vehicle's longest motions.
 const BENDS: f64 = 20.0;
@@ -53,12 +53,8 @@ pub(crate) fn front(
     let FrontTable { radius, speed, watch } = table.map(|table| table.0).unwrap_or_default();
     let radius = radius.unwrap_or_else(|| usual_radius(vehicle));
     let front = if radius == f64::INFINITY { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
-    let front = front.or_else(|why| {
-        wrong("front.radius", radius, format!("inf for a line, or metres ({why})"))
-    })?;
-    let front = front
-        .moving(speed)
-        .or_else(|why| wrong("front.speed", speed, format!("metres a step ({why})")))?;
+    let front = front.or_else(|_| beyond("front.radius", radius))?;
+    let front = front.moving(speed).or_else(|_| beyond("front.speed", speed))?;
     let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
     let longest = (max - min).norm().min(LONGEST);
     match watch {

@@ -7,7 +7,7 @@ use planner_core::{Label, Sample, VersionSpace};
 use serde::Deserialize;
 
 use crate::mission::bounds::Bounds;
-use crate::mission::strict::{Table, wrong};
+use crate::mission::strict::{Table, beyond, wrong};
 use crate::mission::terrain::{self, site};
 use crate::world::World;
 
@@ -30,6 +30,13 @@ pub(crate) struct SampleTable {
     z: f64,
     /// -1 or 1
     label: i64,
+}
+
+impl SampleTable {
+    /// Where it is, metres.
+    pub(crate) const fn at(&self) -> [f64; 2] {
+        [self.x, self.z]
+    }
 }
 
 /// What is known at the start: some samples, and the lines that they leave if they bound any.
@@ -131,7 +138,7 @@ fn points(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> R
         let label = match table.label {
             1 => Label::Positive,
             -1 => Label::Negative,
-            other => return wrong(&format!("{field}.label"), other, "-1 or 1"),
+            other => return beyond(&format!("{field}.label"), other),
         };
         let site = site(&field, table.x, table.z)?;
         terrain::check_inside(&field, site, area)?;

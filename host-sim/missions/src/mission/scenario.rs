@@ -9,8 +9,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::motion::unicycle::Grid;
 use planner_core::{
-    AnyReliability, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability, Site,
-    Tolerance, UnknownReliability, Workspace as _,
+    AnyReliability, AnyVehicle, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability,
+    Site, Tolerance, UnknownReliability, Workspace as _,
 };
 use serde::Deserialize;
 
@@ -20,6 +20,7 @@ use crate::mission::asking::{AskTable, Asking, Price};
 use crate::mission::bounds::Bounds;
 use crate::mission::chords;
 use crate::mission::definition::Mission;
+use crate::mission::doubts;
 use crate::mission::front::{self, FrontTable};
 use crate::mission::given::{CAPACITY, Lines};
 use crate::mission::given::{SampleTable, given, given_of_front};
@@ -28,10 +29,12 @@ use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, Pr
 use crate::mission::seeking::{self, SeekTable};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
-use crate::mission::strict::{Table, wrong};
+use crate::mission::strict::{Table, beyond, no_angle, wrong};
 use crate::mission::terrain::{self, AreaTable, KeepOutTable, site};
 use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
+use crate::mission::wording::{SCENARIO, at_its_line, expected, of_toml};
+use crate::output::kind;
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
 use crate::world::noise::{Extent, NoiseModel, limit};
@@ -145,6 +148,17 @@ struct NoiseTable {
     band: Option<f64>,
 }
 
+impl NoiseTable {
+    /// How often labels are true, as far as anybody says.
+    fn mean(&self) -> f64 {
+        let told = match self.p {
+            Told::Number(p) => p,
+            Told::Beta([a, b]) => a / (a + b),
+        };
+        self.true_p.unwrap_or(told)
+    }
+}
+
 /// How often labels are true, as planners are told.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(untagged, expecting = "expected a probability, or the [a, b] of a Beta prior")]
@@ -218,11 +232,14 @@ pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
 fn simulated(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let mission = any(name, text, folder, overrides)?;
     if !mission.world.is_known() {
-        let found = wrong("truth", "none", "the line that the simulated world is divided by");
+        let found = wrong("truth", "none", BOUNDARY);
         return found.with_context(|| name.to_owned());
     }
     Ok(mission)
 }
+
+/// What a simulated world is divided by.
+const BOUNDARY: &str = "the boundary to simulate, as truth = { slope = 0.4, intercept = 3.5 }";
 
 /// The folder of a file.
 fn beside(path: &Path) -> &Path {
@@ -230,20 +247,18 @@ fn beside(path: &Path) -> &Path {
 }
 
 fn content(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path)
-        .map_err(|error| anyhow!("{}: expected a readable text file: {error}", path.display()))
+    std::fs::read_to_string(path).map_err(|error| {
+        anyhow!("{}: found {}, expected {SCENARIO}", path.display(), kind::unread(&error))
+    })
 }
 
 /// The mission, whether it says what is true or not.
 fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
-    let file: File = toml::from_str(text).map_err(|error| {
-        let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-        anyhow!("{name}:{line}: {}", error.message().replace('\n', "; "))
-    })?;
+    let file: File = toml::from_str(text).map_err(|error| of_toml(name, text, &error))?;
     mission(&file, folder, overrides).map_err(|error| {
-        let text = format!("{error:#}");
         // A wrong number of steps in a flag is reported as the flag's.
-        if text.starts_with("--") { error } else { anyhow!("{name}: {text}") }
+        let is_flag = error.to_string().starts_with("--");
+        if is_flag { error } else { at_its_line(name, text, format_args!("{error:#}")) }
     })
 }
 
@@ -282,6 +297,32 @@ impl Room {
 }
 
 impl File {
+    /// What may be meant otherwise.
+    fn doubts(&self, algorithm: Algorithm, vehicle: &AnyVehicle) -> Vec<String> {
+        let (start, errors) = (&self.start.0, &self.errors.0);
+        let turn_step = self.vehicle.as_ref().and_then(|it| it.0.turn_step());
+        let mut all = doubts::of_angles([
+            ("start.heading", start.heading, std::f64::consts::TAU),
+            ("errors.turn", errors.turn, 0.5),
+            ("errors.heading", errors.heading, 0.5),
+            ("vehicle.turn_step", turn_step.unwrap_or_default(), 0.5),
+        ]);
+        all.extend(doubts::of_points(self.oracle.iter().map(|it| it.0.at()), vehicle));
+        let front = self.front.as_ref().map(|it| it.0).unwrap_or_default();
+        if front.radius.is_some_and(f64::is_finite) && front.watch.is_none() {
+            all.push("front.radius: no effect without front.watch: the planner learns how the front bends".to_owned());
+        }
+        let p = self.noise.as_ref().map_or(1.0, |it| it.0.mean());
+        if p < 1.0 && algorithm.seeks_line() && !algorithm.weighs(true) {
+            let name = algorithm.name();
+            all.push(format!(
+                "noise: {name} takes labels to be true, so a wrong one may cut the true line off; scc and lookahead \
+                 weigh them"
+            ));
+        }
+        all
+    }
+
     /// Whether an audit comes before a goal's promise.
     fn audits(&self) -> bool {
         self.stop.as_ref().is_some_and(|table| table.0.audits())
@@ -332,11 +373,7 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize, labels: Room) -> Resu
 /// Names `field`, the number and the limit.
 pub fn check_readings(field: &str, readings: u32) -> Result<()> {
     if !(1..=MOST_READINGS).contains(&readings) {
-        return wrong(
-            field,
-            readings,
-            format!("1 to {MOST_READINGS}, the last at the motion's end"),
-        );
+        return beyond(field, readings);
     }
     Ok(())
 }
@@ -357,6 +394,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
+    let of_area = doubts::of_area(&area, &vehicle)?;
     if algorithm == Algorithm::Lawnmower {
         lawnmower::check_area(&area)?;
     }
@@ -405,6 +443,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     if matches!(p_told, Some(AnyReliability::Unknown(_))) {
         check_unknown("noise.p", tolerance, algorithm)?;
     }
+    let doubts = of_area.into_iter().chain(file.doubts(algorithm, &vehicle)).collect();
     let following = file.following.map_or(algorithm.following(), Following::from);
     let crossing = file.crossing.into();
     let config = Settings { area, weight, crossing, following, tolerance };
@@ -440,6 +479,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         seeking,
         watch,
         until_closed,
+        doubts,
     };
     mission.check_patch()?;
     Ok(mission)
@@ -457,8 +497,7 @@ fn check_trust(noise: Option<NoiseModel>, bounds: &Bounds) -> Result<bool> {
 }
 
 fn weight(weight: f64) -> Result<EffortWeight> {
-    let expected = "a weight in [0, 1), to six decimal places";
-    EffortWeight::new(weight).or_else(|_| wrong("varrho", weight, expected))
+    EffortWeight::new(weight).or_else(|_| beyond("varrho", weight))
 }
 
 fn errors(table: &ErrorsTable) -> Result<Errors> {
@@ -468,8 +507,7 @@ fn errors(table: &ErrorsTable) -> Result<Errors> {
     }
     for (name, value) in [("turn", turn), ("heading", heading)] {
         if !(0.0..=1.0).contains(&value) {
-            let expected = "a standard deviation in radians, 0 to 1";
-            return wrong(&format!("errors.{name}"), value, expected);
+            return no_angle(&format!("errors.{name}"), value);
         }
     }
     Ok(Errors { motion, turn, position, heading })
@@ -481,7 +519,7 @@ fn errors(table: &ErrorsTable) -> Result<Errors> {
 /// Names `field` and the number.
 pub fn deviation(field: &str, metres: f64) -> Result<f64> {
     if !(0.0..=100.0).contains(&metres) {
-        return wrong(field, metres, "a standard deviation in metres, 0 to 100");
+        return beyond(field, metres);
     }
     Ok(metres)
 }
@@ -493,7 +531,7 @@ pub fn deviation(field: &str, metres: f64) -> Result<f64> {
 pub fn position(field: &str, metres: Option<f64>, errors: Errors) -> Result<f64> {
     let metres = metres.unwrap_or(CUT * errors.position);
     let is_one = Tolerance::new(metres).is_ok();
-    if is_one { Ok(metres) } else { wrong(field, metres, "a distance in metres, 0 to 1024") }
+    if is_one { Ok(metres) } else { beyond(field, metres) }
 }
 
 /// Whether something is left to find out under a tolerance.
@@ -552,7 +590,7 @@ fn noise(table: &NoiseTable) -> Result<(NoiseModel, Option<AnyReliability>)> {
             return wrong("noise", "both trusted_radius and band", "one of them");
         }
         (None, Some(half)) if half >= 0.0 && half.is_finite() => Extent::Band(half),
-        (None, Some(half)) => return wrong("noise.band", half, "a distance in metres"),
+        (None, Some(half)) => return beyond("noise.band", half),
         (radius, None) => {
             Extent::OutsideBalls(trusted("noise.trusted_radius", radius.unwrap_or(0.0))?)
         }
@@ -596,7 +634,7 @@ pub fn check_unknown(field: &str, tolerance: Tolerance, algorithm: Algorithm) ->
 /// Names `field` and the number.
 pub fn told(field: &str, p: f64) -> Result<f64> {
     if Noise::new(p).is_err() {
-        return wrong(field, p, "a probability above 0.5, 1 at most; below it, swap the labels");
+        return wrong(field, p, expected("p").unwrap_or_default());
     }
     Ok(p)
 }
@@ -607,7 +645,7 @@ pub fn told(field: &str, p: f64) -> Result<f64> {
 /// Names `field` and the number.
 pub fn probability(field: &str, p: f64) -> Result<f64> {
     if Reliability::new(p).is_err() {
-        return wrong(field, p, "a probability in [0, 1]");
+        return beyond(field, p);
     }
     Ok(p)
 }
@@ -618,7 +656,7 @@ pub fn probability(field: &str, p: f64) -> Result<f64> {
 /// Names `field` and the number.
 pub fn trusted(field: &str, radius: f64) -> Result<f64> {
     if trusted_radius(radius).is_none() {
-        return wrong(field, radius, "a radius in metres, at least 0 and below 8192");
+        return beyond(field, radius);
     }
     Ok(radius)
 }
@@ -626,7 +664,7 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
 /// Where it starts: at the oracle's first point, unless the file says otherwise.
 fn start(table: &StartTable, first: Option<Site>, area: &MissionArea) -> Result<Pose> {
     let Ok(heading) = Heading::from_radians(table.heading) else {
-        return wrong("start.heading", table.heading, "a finite angle in radians");
+        return beyond("start.heading", table.heading);
     };
     let first = first.map(Point2::<f64>::from);
     let place = |told: Option<f64>, first: Option<f64>| told.or(first);

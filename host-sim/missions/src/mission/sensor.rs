@@ -4,7 +4,7 @@ use anyhow::Result;
 use planner_core::Label;
 use serde::{Deserialize, Serialize};
 
-use crate::mission::strict::wrong;
+use crate::mission::strict::{beyond, wrong};
 use crate::world::faults::{Fault, FaultKind};
 
 /// One fault: one kind, and the labels that it spoils, by their numbers from 1.
@@ -63,25 +63,25 @@ impl FaultTable {
     fn fault(&self, field: &str) -> Result<Fault> {
         let name = |key: &str| format!("{field}.{key}");
         let is_on = |key: &str, value: bool, kind: FaultKind| {
-            if value { Ok(kind) } else { wrong(&name(key), "false", "true, or no such key") }
+            if value { Ok(kind) } else { beyond(&name(key), "false") }
         };
         let kinds = [
             self.off.map(|it| is_on("off", it, FaultKind::Off)),
             self.stuck.map(|it| match it {
                 1 => Ok(FaultKind::Stuck(Label::Positive)),
                 -1 => Ok(FaultKind::Stuck(Label::Negative)),
-                other => wrong(&name("stuck"), other, "-1 or 1"),
+                other => beyond(&name("stuck"), other),
             }),
             self.garbage.map(|it| is_on("garbage", it, FaultKind::Garbage)),
             self.inverted.map(|it| is_on("inverted", it, FaultKind::Inverted)),
             self.slow.map(|it| match it {
                 0.0..=FURTHEST => Ok(FaultKind::Slow(it)),
-                _ => wrong(&name("slow"), it, format!("a distance in metres, 0 to {FURTHEST}")),
+                _ => beyond(&name("slow"), it),
             }),
             self.delayed.map(|it| Ok(FaultKind::Delayed(count(&name("delayed"), it, 1)?))),
             self.dropouts.map(|it| match it {
                 0.0..=1.0 => Ok(FaultKind::Dropouts(it)),
-                _ => wrong(&name("dropouts"), it, "a probability in [0, 1]"),
+                _ => beyond(&name("dropouts"), it),
             }),
         ];
         let mut kinds = kinds.into_iter().flatten();

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
-use crate::mission::strict::wrong;
+use crate::mission::strict::{beyond, wrong};
 
 /// A heading's units in a degree.
 const UNITS_PER_DEGREE: f64 = 4_294_967_296.0 / 360.0;
@@ -83,11 +83,7 @@ impl StopTable {
                 Accuracy::SlopeArc(Angle(units - TURN_OFF))
             }
             (Some(degrees), None) => {
-                return wrong(
-                    "stop.slope_arc_deg",
-                    degrees,
-                    "degrees, at least 0.00001 and below 90",
-                );
+                return beyond("stop.slope_arc_deg", degrees);
             }
             (None, Some(share)) if (1e-5..1.0).contains(&share) => {
                 // A share with six decimal places becomes exactly that many millionths.
@@ -95,8 +91,7 @@ impl StopTable {
                 Accuracy::Misclassified(millionths - SHARE_OFF)
             }
             (None, Some(share)) => {
-                let expected = "a share of the area, at least 0.00001 and below 1";
-                return wrong("stop.misclassified", share, expected);
+                return beyond("stop.misclassified", share);
             }
             (Some(_), Some(_)) => {
                 return wrong("stop", "both slope_arc_deg and misclassified", "one of them");
@@ -112,8 +107,7 @@ impl StopTable {
             None => LEVEL,
             Some(level) if (1e-6..=MOST_LEVEL).contains(&level) => level,
             Some(level) => {
-                let expected = format!("a probability above 0, {MOST_LEVEL} at most");
-                return wrong("stop.level", level, expected);
+                return beyond("stop.level", level);
             }
         };
         Ok(Goal { accuracy, level: (level * MILLION).round() as u32 })

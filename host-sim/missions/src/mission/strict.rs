@@ -9,12 +9,31 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+use crate::mission::wording::{expected, in_radians};
+
 /// Refuses a value by the name of its field.
 ///
 /// # Errors
 /// Always: what was found, and what was expected.
 pub fn wrong<T>(field: &str, found: impl Display, expected: impl Display) -> anyhow::Result<T> {
     bail!("{field}: found {found}, expected {expected}")
+}
+
+/// Refuses a value of a key or a flag with the words that [`expected`] has for it.
+///
+/// # Errors
+/// Always: what was found, and what was expected.
+pub fn beyond<T>(field: &str, found: impl Display) -> anyhow::Result<T> {
+    wrong(field, found, expected(field).unwrap_or("another"))
+}
+
+/// As [`beyond`], of an angle in radians. It may have been meant in degrees.
+///
+/// # Errors
+/// Always.
+pub fn no_angle<T>(field: &str, radians: f64) -> anyhow::Result<T> {
+    let hint = if radians > 1.0 { format!(" ({})", in_radians(radians)) } else { String::new() };
+    wrong(field, radians, format!("{}{hint}", expected(field).unwrap_or("radians")))
 }
 
 /// A value that must be a table.

@@ -7,7 +7,8 @@ use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use planner_core::{Area, Hull, KeepOut, Line, Site, Workspace as _};
 use serde::Deserialize;
 
-use crate::mission::strict::{Numbers, Table, wrong};
+use crate::mission::allowance::tidy;
+use crate::mission::strict::{Numbers, Table, beyond, wrong};
 use crate::world::polygon::Polygon;
 
 /// `area` of a scenario file, metres: a rectangle, or a convex polygon by its corners in order.
@@ -62,7 +63,14 @@ pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Resul
             let found = |why| wrong("area.polygon", why, "a polygon with an inside");
             MissionArea::new(hull, &[]).or_else(found)?
         }
-        _ => return wrong("area", "other keys", "either { x, z } or { polygon }"),
+        _ => {
+            let keys = [
+                ("x", area.x.is_some()),
+                ("z", area.z.is_some()),
+                ("polygon", area.polygon.is_some()),
+            ];
+            return wrong("area", present(&keys), "either { x, z } or { polygon }");
+        }
     };
     if keep_outs.len() > MOST_KEEP_OUTS {
         return wrong("keep_out", keep_outs.len(), format!("at most {MOST_KEEP_OUTS}"));
@@ -80,8 +88,7 @@ fn keep_out(number: usize, table: &KeepOutTable) -> Result<KeepOut<MOST_CORNERS>
         (Some(x), Some(z), Some(radius), None) => {
             let units = (radius * f64::from(UNITS_PER_METRE)).ceil();
             if !(radius > 0.0 && radius <= 4096.0) {
-                let expected = "a radius in metres, above 0 and up to 4096";
-                return wrong(&format!("{field}.radius"), radius, expected);
+                return beyond(&format!("{field}.radius"), radius);
             }
             let hull = Hull::new(&[site(&field, x, z)?])?;
             Ok(KeepOut { hull, radius: units as u32 })
@@ -89,8 +96,23 @@ fn keep_out(number: usize, table: &KeepOutTable) -> Result<KeepOut<MOST_CORNERS>
         (None, None, None, Some(corners)) => {
             Ok(KeepOut { hull: hull(&format!("{field}.polygon"), corners, 2)?, radius: 0 })
         }
-        _ => wrong(&field, "other keys", "either { x, z, radius } or { polygon }"),
+        _ => {
+            let keys = [
+                ("x", table.x.is_some()),
+                ("z", table.z.is_some()),
+                ("radius", table.radius.is_some()),
+                ("polygon", table.polygon.is_some()),
+            ];
+            wrong(&field, present(&keys), "either { x, z, radius } or { polygon }")
+        }
     }
+}
+
+/// The keys that are there.
+fn present(keys: &[(&str, bool)]) -> String {
+    let found: Vec<_> =
+        keys.iter().filter(|(_, is_there)| *is_there).map(|(key, _)| *key).collect();
+    if found.is_empty() { "no keys".to_owned() } else { found.join(" and ") }
 }
 
 fn hull(field: &str, corners: &[Numbers<2>], least: usize) -> Result<Hull<MOST_CORNERS>> {
@@ -135,9 +157,16 @@ pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
 /// Names `field` and what is in the way.
 pub fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
     let at = Point2::<f64>::from(site);
-    let found = format!("({}, {})", at.x, at.y);
+    let found = format!("({}, {})", tidy(at.x), tidy(at.y));
     if !area.encloses(site) {
-        return wrong(field, found, "a point inside the area");
+        let bounds = area.bounds();
+        let [min, max] = [bounds.min(), bounds.max()].map(Point2::<f64>::from);
+        let [x, z] = [[min.x, max.x], [min.y, max.y]].map(|it| it.map(tidy));
+        let expected = format!(
+            "a point inside the area, in metres: x {} to {}, z {} to {}",
+            x[0], x[1], z[0], z[1]
+        );
+        return wrong(field, found, expected);
     }
     let in_the_way = area.keep_outs().position(|it| !it.is_clear_of(&[site], 0));
     in_the_way.map_or(Ok(()), |k| wrong(field, found, format!("a point outside keep_out[{k}]")))

@@ -1,5 +1,6 @@
 //! `truth` of a scenario file: the boundary of the simulated world.
 
+use std::fs;
 use std::path::Path;
 
 use anyhow::Result;
@@ -9,6 +10,7 @@ use planner_core::link::message::MissionArea;
 use serde::Deserialize;
 
 use crate::mission::strict::{Numbers, Table, wrong};
+use crate::output::kind;
 use crate::output::notes::mention;
 use crate::world::World;
 use crate::world::boundary::{CoastRecord, Curve};
@@ -74,7 +76,16 @@ impl TruthTable {
             if !threshold.is_finite() {
                 return wrong("truth.threshold", threshold, "a number");
             }
-            let grid = raster_file::read(&folder.join(name), rectangle);
+            let path = folder.join(name);
+            if let Err(error) = fs::File::open(&path) {
+                let expected = "the name of one, beside the scenario";
+                return wrong(
+                    "truth.raster",
+                    format!("{} as {name}", kind::unread(&error)),
+                    expected,
+                );
+            }
+            let grid = raster_file::read(&path, rectangle);
             let mut grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
             if let Some([x, z]) = grid.brought_to(rectangle) {
                 mention(format_args!(
@@ -134,9 +145,10 @@ impl TruthTable {
         let line = match (self.slope, self.intercept, coefficients) {
             (Some(slope), Some(intercept), None) => Line::from_slope(slope, intercept),
             (None, None, Some([a, b, c])) => Line::from_coefficients(a, b, c),
-            (None, None, None) => return wrong("truth", "neither", expected),
+            (None, None, None) => return wrong("truth", "no boundary", expected),
             (_, _, Some(_)) => return wrong("truth", "both", expected),
-            _ => return wrong("truth", "only one of slope and intercept", expected),
+            (Some(_), None, _) => return wrong("truth", "slope without intercept", expected),
+            (None, Some(_), _) => return wrong("truth", "intercept without slope", expected),
         };
         let found = match (self.slope, self.intercept, coefficients) {
             (Some(slope), Some(intercept), _) => format!("slope {slope}, intercept {intercept}"),

@@ -1,5 +1,7 @@
 //! The vehicle of a mission, as scenario files, flags and traces describe it.
 
+use std::f64::consts::PI;
+
 use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::aimed_for;
@@ -14,7 +16,7 @@ use planner_core::{AnyVehicle, Area, Boat, Car, Unicycle, Workspace as _};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::strict::wrong;
+use crate::mission::strict::{beyond, no_angle, wrong};
 
 /// Actions that margin sampling and the random walk try one by one, at most.
 const MOST_TRIED: u64 = 1_000_000;
@@ -89,6 +91,11 @@ impl Source {
 }
 
 impl VehicleTable {
+    /// The step of turning, if one was asked for; radians.
+    pub(crate) const fn turn_step(&self) -> Option<f64> {
+        self.turn_step
+    }
+
     /// The longest motion, if one was asked for; metres.
     pub const fn reach(&self) -> Option<f64> {
         self.reach
@@ -111,20 +118,18 @@ impl VehicleTable {
             return wrong(&name("turn_step"), "a fan too", "one of them");
         }
         self.check_keys(source)?;
+        self.check_ranges(source)?;
         let default = if grid == Grid::Fine { 1e-6 } else { 0.01 };
         let turn_step_urad = whole(&name("turn_step"), self.turn_step.unwrap_or(default), 1e6)?;
         let step = self.step.unwrap_or(0.1);
         let speed_step_mm = whole(&name("step"), step, 1e3)?;
         let reach_mm = whole(&name("reach"), self.reach.unwrap_or(2.0), 1e3)?;
-        if reach_mm >= ActionGrid::LONGEST_MM {
-            let found = format!("{} m", f64::from(reach_mm) / 1e3);
-            let expected = format!("less than {} m", ActionGrid::LONGEST_MM / 1000);
-            return wrong(&name("reach"), found, expected);
-        }
+        let reach = f64::from(reach_mm) / 1e3;
         let steps = u16::try_from(reach_mm / speed_step_mm).unwrap_or(u16::MAX);
         if reach_mm % speed_step_mm != 0 || steps == u16::MAX {
-            let found = format!("{} with steps of {step}", f64::from(reach_mm) / 1e3);
-            return wrong(&name("reach"), found, "1 to 65534 steps");
+            let expected =
+                format!("a whole part of the longest motion, {reach} m, 65534 parts at most");
+            return wrong(&name("step"), step, expected);
         }
         let speeds = steps + 1;
         let sharpest = self.sharpest.unwrap_or(std::f64::consts::FRAC_PI_2);
@@ -143,7 +148,22 @@ impl VehicleTable {
                 Car::new(shape).map(AnyVehicle::Car)
             }
         };
-        let made = made.or_else(|bad: GridError| wrong(&name("kind"), "no such vehicle", bad))?;
+        let made = made.or_else(|bad| match (bad, self.radius) {
+            (GridError::Turn, Some(_)) => {
+                let turn_step = f64::from(turn_step_urad) / 1e6;
+                wrong(&name("turn_step"), turn_step, "radians, up to 0.7854 for a car")
+            }
+            (GridError::Circle, Some(radius)) => {
+                let shortest = self.shortest.unwrap_or(step);
+                let found = format!("{radius} with motions from {shortest} to {reach} m");
+                wrong(&name("radius"), found, "a turning circle that some motion goes round")
+            }
+            (GridError::Circle, None) => {
+                let expected = "a sharper turn, so that some motion goes round the turning circle";
+                wrong(&name("sharpest"), sharpest, expected)
+            }
+            _ => wrong(&name("kind"), "no such vehicle", bad),
+        })?;
         check_suits(&name("kind"), &made, algorithm)?;
         Ok(made)
     }
@@ -163,8 +183,33 @@ impl VehicleTable {
             ("shortest", self.shortest.is_some(), is_car),
         ] {
             if is_there && !means {
-                let kind = format!("a {:?}", self.kind).to_lowercase();
-                return wrong(&source.name(key), kind, "a kind that has it");
+                let kind = format!("with a {:?}", self.kind).to_lowercase();
+                let has_it = if is_car { "with a unicycle or a boat" } else { "with a car" };
+                return wrong(&source.name(key), kind, has_it);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether each number is one that some vehicle may have.
+    fn check_ranges(&self, source: Source) -> Result<()> {
+        let longest = f64::from(ActionGrid::LONGEST_MM) / 1e3;
+        let longest_step = f64::from(ActionGrid::LONGEST_STEP_MM) / 1e3;
+        for (key, value, least, below) in [
+            ("reach", self.reach, 1e-3, longest),
+            ("step", self.step, 1e-3, longest_step),
+            ("radius", self.radius, 1e-3, 2048.0),
+            ("shortest", self.shortest, 1e-3, longest),
+        ] {
+            if let Some(metres) = value.filter(|it| !(least..below).contains(it)) {
+                return beyond(&source.name(key), metres);
+            }
+        }
+        for (key, value, least) in
+            [("sharpest", self.sharpest, 1e-3), ("turn_step", self.turn_step, 1e-6)]
+        {
+            if let Some(radians) = value.filter(|it| !(least..PI + 1e-6).contains(it)) {
+                return no_angle(&source.name(key), radians);
             }
         }
         Ok(())
@@ -211,16 +256,6 @@ pub fn with_steps(
     algorithm: Algorithm,
 ) -> Result<AnyVehicle> {
     let old = VehicleTable::from(vehicle);
-    if let (Some(step), Some(reach)) = (speed_step, old.reach) {
-        let parts = reach / step;
-        if (parts - parts.round()).abs() > 1e-6 {
-            return wrong(
-                "--speed-step",
-                step,
-                format!("a whole part of the longest motion, {reach} m"),
-            );
-        }
-    }
     let (step, turn_step) = (speed_step.or(old.step), turn_step.or(old.turn_step));
     let table = VehicleTable { step, turn_step, ..old };
     table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
@@ -256,7 +291,11 @@ pub fn check_room(
     let tolerance = config.tolerance.metres();
     aimed_for(config.area, vehicle, config.tolerance).map(drop).or_else(|error| {
         if let SetupError::Room(none) = error {
-            return wrong(&source.name("kind"), of_area(config.area.bounds(), tolerance), none);
+            let key = if matches!(vehicle, AnyVehicle::Car(_)) { "radius" } else { "sharpest" };
+            let across = f64::from(none.across_mm) / 1e3;
+            let found = format!("a turning circle {across:.1} m across");
+            let area = of_area(config.area.bounds(), tolerance);
+            return wrong(&source.name(key), found, format!("one that fits into {area}"));
         }
         let found = format!("{tolerance} m");
         // Reading a scenario file has refused such a tolerance by its parts.

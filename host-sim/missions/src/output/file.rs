@@ -4,12 +4,13 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Error, Result, anyhow, bail};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
 use crate::output::ending;
 use crate::output::interruption::unfinished;
+use crate::output::kind;
 use crate::output::notes::mention;
 use crate::output::place::Place;
 
@@ -95,7 +96,7 @@ pub fn prepare<const N: usize>(
     let mut outputs = [const { None }; N];
     for (((_, path), place), output) in asked.iter().zip(places).zip(&mut outputs) {
         if let (Some(path), Some(place)) = (path, place) {
-            *output = Some(Output::at(path, &place).with_context(|| refusal(path))?);
+            *output = Some(Output::at(path, &place).map_err(|error| refusal(path, &error))?);
         }
     }
     Ok(outputs)
@@ -109,11 +110,27 @@ pub fn place_for(path: &Path) -> Result<Place> {
     if path.is_dir() || path.as_os_str().as_encoded_bytes().ends_with(b"/") {
         bail!("{}: found a directory, expected a file", path.display());
     }
-    Place::of(path).with_context(|| refusal(path))
+    Place::of(path).map_err(|error| refusal(path, &error))
 }
 
-fn refusal(path: &Path) -> String {
-    format!("{}: expected a place to write a file", path.display())
+/// Why nothing can be written there.
+pub(crate) fn refusal(path: &Path, error: &io::Error) -> Error {
+    anyhow!(
+        "{}: found {}, expected a place to write a file",
+        path.display(),
+        kind::unwritten(error)
+    )
+}
+
+/// Makes a folder and those above it.
+///
+/// # Errors
+/// Names the folder, and the flag that asks for it.
+pub fn make_folder(flag: &str, folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let (name, found) = (folder.display(), kind::unwritten(&error));
+        anyhow!("{flag}{name}: found {found}, expected a place to make a folder")
+    })
 }
 
 impl Output {

@@ -4,6 +4,7 @@ pub mod checksum;
 pub mod ending;
 pub mod file;
 pub mod interruption;
+pub mod kind;
 mod ledger;
 pub mod notes;
 pub mod partial;

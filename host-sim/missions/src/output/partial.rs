@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, Result, anyhow, bail};
 
 use crate::output::checksum::Checksum;
-use crate::output::file::{Output, hand_on_permissions, prepare};
+use crate::output::file::{Output, hand_on_permissions, prepare, refusal};
 use crate::output::interruption::unfinished;
 use crate::output::ledger::Ledger;
 use crate::output::place::Place;
@@ -104,11 +104,13 @@ impl Partial {
         if let (Some(Record { text, .. }), Some(record), false) = (begin.record, &record, is_there)
         {
             let begun = Ledger::begin(record, text);
-            ledger = Some(begun.with_context(|| format!("{name}.json"))?);
+            ledger = Some(
+                begun.map_err(|error| refusal(&with_suffix(Path::new(&name), ".json"), &error))?,
+            );
         }
         let mut options = OpenOptions::new();
         let file = options.read(true).append(true).create_new(!is_there).open(&path);
-        let file = file.with_context(|| name.clone())?;
+        let file = file.map_err(|error| refusal(Path::new(&name), &error))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             bail!("{name}: found another program writing it, expected none");
         }

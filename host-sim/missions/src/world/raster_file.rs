@@ -26,7 +26,7 @@ pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
     }
     // A device or a pipe may have no end.
     let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
-    found.with_context(|| format!("a readable file of {} MB at most", MOST_BYTES >> 20))?;
+    found.with_context(|| format!("a file, of {} MB at most", MOST_BYTES >> 20))?;
     if is_tiff {
         let grid = File::open(path)
             .map_err(Into::into)
