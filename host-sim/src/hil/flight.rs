@@ -68,8 +68,10 @@ pub fn fly(player: &mut Player, chip: &Chip, faults: Faults, seed: u64) -> Resul
         Chip::Board { device, baud } => {
             let read_timeout = Duration::from_millis(100);
             let port = serialport::new(device, *baud).timeout(read_timeout).open();
-            let port =
-                port.map_err(|why| anyhow!("{device}: found {why}, expected a serial port"))?;
+            let port = port.map_err(|why| {
+                let found = why.to_string().to_lowercase();
+                anyhow!("{device}: found {found}, expected a serial port")
+            })?;
             let reader = port.try_clone().with_context(|| device.clone())?;
             play(player, Cable::new(reader, port, faults, seed))
         }

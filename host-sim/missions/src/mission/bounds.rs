@@ -1,10 +1,13 @@
 //! What is known of the line beforehand: `bounds` of scenario files.
 
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use planner_core::Sample;
 use planner_core::bounds::{intercept_within, slope_within_degrees};
+use planner_core::error::ValueError;
 use planner_core::link::message::MissionArea;
 use serde::{Deserialize, Serialize};
+
+use crate::mission::strict::wrong;
 
 /// `bounds` of a scenario file: what is known of the line beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,17 +30,17 @@ impl Bounds {
     /// # Errors
     /// Names the field, what was found and what was expected.
     pub(crate) fn samples(&self, area: &MissionArea) -> Result<Vec<Sample>> {
-        let named = |field: &str, found: [f64; 2], error| {
-            anyhow!("bounds.{field}: found {found:?}, but {error}")
+        let refused = |key: &str, found: [f64; 2], why: ValueError| {
+            wrong(key, format_args!("{found:?}"), format_args!("others: {why}"))
         };
         let mut samples = Vec::new();
         if let Some(bounds) = self.slope {
             let of_slope = slope_within_degrees(area, bounds);
-            samples.extend(of_slope.map_err(|error| named("slope", bounds, error))?);
+            samples.extend(of_slope.or_else(|why| refused("bounds.slope", bounds, why))?);
         }
         if let Some(bounds) = self.intercept {
             let of_intercept = intercept_within(bounds);
-            samples.extend(of_intercept.map_err(|error| named("intercept", bounds, error))?);
+            samples.extend(of_intercept.or_else(|why| refused("bounds.intercept", bounds, why))?);
         }
         Ok(samples)
     }
