@@ -1,13 +1,11 @@
 //! What is known of the line beforehand: `bounds` of scenario files.
 
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use planner_core::Sample;
 use planner_core::bounds::{intercept_within, slope_within_degrees};
 use planner_core::error::ValueError;
 use planner_core::link::message::MissionArea;
 use serde::{Deserialize, Serialize};
-
-use crate::mission::strict::wrong;
 
 /// `bounds` of a scenario file: what is known of the line beforehand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -31,16 +29,16 @@ impl Bounds {
     /// Names the field, what was found and what was expected.
     pub(crate) fn samples(&self, area: &MissionArea) -> Result<Vec<Sample>> {
         let refused = |key: &str, found: [f64; 2], why: ValueError| {
-            wrong(key, format_args!("{found:?}"), format_args!("others: {why}"))
+            anyhow!("bounds.{key}: found {found:?}, expected others: {why}")
         };
         let mut samples = Vec::new();
         if let Some(bounds) = self.slope {
             let of_slope = slope_within_degrees(area, bounds);
-            samples.extend(of_slope.or_else(|why| refused("bounds.slope", bounds, why))?);
+            samples.extend(of_slope.map_err(|why| refused("slope", bounds, why))?);
         }
         if let Some(bounds) = self.intercept {
             let of_intercept = intercept_within(bounds);
-            samples.extend(of_intercept.or_else(|why| refused("bounds.intercept", bounds, why))?);
+            samples.extend(of_intercept.map_err(|why| refused("intercept", bounds, why))?);
         }
         Ok(samples)
     }
