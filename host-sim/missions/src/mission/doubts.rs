@@ -53,17 +53,14 @@ pub(crate) fn of_angles<const N: usize>(angles: [(&str, f64, f64); N]) -> Vec<St
 }
 
 /// Given points that lie together more closely than a motion reaches.
-pub(crate) fn of_points(
-    points: impl Iterator<Item = [f64; 2]> + Clone,
-    vehicle: &AnyVehicle,
-) -> Option<String> {
+pub(crate) fn of_points(points: &[[f64; 2]], vehicle: &AnyVehicle) -> Option<String> {
     let [shortest, _] = motions(vehicle);
     let extent = |axis: usize| {
-        let along = points.clone().map(|at| at[axis]);
+        let along = points.iter().map(|at| at[axis]);
         along.clone().fold(f64::MIN, f64::max) - along.fold(f64::MAX, f64::min)
     };
     let [x, z] = [extent(0), extent(1)];
-    (points.clone().count() > 1 && x.max(z) < shortest).then(|| {
+    (points.len() > 1 && x.max(z) < shortest).then(|| {
         let (x, z) = (tidy(x), tidy(z));
         format!("oracle: all points within {x} m x {z} m; are these degrees? Lengths are in metres")
     })

@@ -298,7 +298,14 @@ impl Room {
 
 impl File {
     /// What may be meant otherwise.
-    fn doubts(&self, algorithm: Algorithm, vehicle: &AnyVehicle) -> Vec<String> {
+    ///
+    /// # Errors
+    /// Names the area if it cannot be in metres.
+    fn doubts(
+        &self,
+        area: &MissionArea,
+        (algorithm, vehicle): (Algorithm, &AnyVehicle),
+    ) -> Result<Vec<String>> {
         let (start, errors) = (&self.start.0, &self.errors.0);
         let turn_step = self.vehicle.as_ref().and_then(|it| it.0.turn_step());
         let mut all = doubts::of_angles([
@@ -307,7 +314,9 @@ impl File {
             ("errors.heading", errors.heading, 0.5),
             ("vehicle.turn_step", turn_step.unwrap_or_default(), 0.5),
         ]);
-        all.extend(doubts::of_points(self.oracle.iter().map(|it| it.0.at()), vehicle));
+        let points = self.oracle.iter().map(|it| it.0.at()).collect::<Vec<_>>();
+        all.extend(doubts::of_points(&points, vehicle));
+        all.extend(doubts::of_area(area, vehicle)?);
         let front = self.front.as_ref().map(|it| it.0).unwrap_or_default();
         if front.radius.is_some_and(f64::is_finite) && front.watch.is_none() {
             all.push("front.radius: no effect without front.watch: the planner learns how the front bends".to_owned());
@@ -320,7 +329,7 @@ impl File {
                  weigh them"
             ));
         }
-        all
+        Ok(all)
     }
 
     /// Whether an audit comes before a goal's promise.
@@ -394,7 +403,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
     let area = terrain::area(&file.area.0, &file.keep_out)?;
-    let of_area = doubts::of_area(&area, &vehicle)?;
+    let doubts = file.doubts(&area, (algorithm, &vehicle))?;
     if algorithm == Algorithm::Lawnmower {
         lawnmower::check_area(&area)?;
     }
@@ -416,8 +425,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, given_count, room)?;
-    let truth = file.truth.as_ref().map(|table| table.0.world(&area, folder)).transpose()?;
-    let world = truth.unwrap_or(World::UNKNOWN);
+    let world = file.truth.as_ref().map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, folder))?;
     let given = if algorithm.seeks_line() { given } else { given_of_front };
     let given = given(&file.oracle, &bounds, &area, &world)?;
     if algorithm == Algorithm::Chords {
@@ -443,10 +451,8 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     if matches!(p_told, Some(AnyReliability::Unknown(_))) {
         check_unknown("noise.p", tolerance, algorithm)?;
     }
-    let doubts = of_area.into_iter().chain(file.doubts(algorithm, &vehicle)).collect();
     let following = file.following.map_or(algorithm.following(), Following::from);
-    let crossing = file.crossing.into();
-    let config = Settings { area, weight, crossing, following, tolerance };
+    let config = Settings { area, weight, crossing: file.crossing.into(), following, tolerance };
     vehicle::check_room(Source::File, &vehicle, &config)?;
     let stop = file.stop.as_ref().map(|table| &table.0);
     let (goal, until_closed) = if algorithm.seeks_line() {
