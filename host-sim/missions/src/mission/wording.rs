@@ -256,6 +256,7 @@ mod tests {
         assert_eq!(expected("--speed-step"), expected("vehicle.step"));
         assert_eq!(expected("--drift"), expected("allow.drift"));
         assert_ne!(expected("truth.drift"), expected("allow.drift"));
-        assert_eq!(expected("area.x[1]"), None);
+        assert_eq!(expected("area.x[1]"), Some("metres"));
+        assert_eq!(expected("truth.circle[2]"), None);
     }
 }
