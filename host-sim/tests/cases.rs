@@ -228,7 +228,7 @@ impl Folder {
         let other = if is_front {
             include_str!("../scenarios/coast.toml")
         } else {
-            include_str!("../scenarios/begin-true.toml")
+            include_str!("../scenarios/begin-line.toml")
         };
         let mut mission = if is_whole { toml::Table::new() } else { of(other)? };
         mission.extend(keys);

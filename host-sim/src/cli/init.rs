@@ -58,8 +58,11 @@ const fn beginning(kind: Kind) -> Beginning {
 
 /// Writes it, and what to print.
 pub(crate) fn init(args: &Init) -> Result<String> {
-    let name = plain::name(&args.file.display().to_string());
-    if args.file.is_file() && !args.force {
+    let (command, usual, text) = beginning(args.kind);
+    let usual = Path::new(usual);
+    let file = args.file.as_deref().unwrap_or(usual);
+    let name = plain::name(&file.display().to_string());
+    if file.is_file() && !args.force {
         bail!("{name}: found a file, expected none there, or --force");
     }
     let [output] = prepare(&[], [("the file", Some(file))])?;

@@ -24,7 +24,7 @@ fn message(error: &clap::Error) -> Error {
     };
     let first = |kind| words(kind).into_iter().next().unwrap_or_default();
     let argument = first(ContextKind::InvalidArg);
-    let flag = argument.split([' ', '[']).next().unwrap_or_default();
+    let flag = argument.trim_start_matches('[').split([' ', '[', ']']).next().unwrap_or_default();
     let usage = first(ContextKind::Usage);
     let usage = usage.trim_start_matches("Usage:").split_whitespace().collect::<Vec<_>>().join(" ");
     let is_name = |word: &&str| !word.starts_with(['[', '<', '-']);
