@@ -121,8 +121,8 @@ mod tests {
             ("cut=x", "cut"),
             ("delay=20", "delay"),
             ("lose=0.1", "lose"),
-            ("drop=0.1,cut=0.1,drop=0.2", "drop: found twice"),
-            ("delay=1ms,delay=1ms", "delay: found twice"),
+            ("drop=0.1,cut=0.1,drop=0.2", "found drop twice"),
+            ("delay=1ms,delay=1ms", "found delay twice"),
             ("", "name=value"),
         ] {
             let error = text.parse::<Faults>().unwrap_err().to_string();

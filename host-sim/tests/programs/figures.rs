@@ -76,7 +76,7 @@ fn all_that_is_drawn_is_named_and_the_reverse() {
         ("few", GOOD, "3", "cfc"),
         ("one", GOOD, "1", "cfc"),
         ("many", GOOD, "60", "lookahead"),
-        ("walk", GOOD, "64", "random"),
+        ("walk", GOOD, "60", "random"),
         ("noisy", NOISY, "10", "scc"),
         ("long", NOISY, "60", "scc"),
         ("car", CAR, "20", "lookahead"),

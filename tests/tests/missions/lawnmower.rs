@@ -168,6 +168,6 @@ fn it_refuses_areas_that_are_not_plain_rectangles() {
         let scenario = scenario.replace(area, &found);
         let error = scenario::parse("m.toml", &scenario, asked).expect_err("it cannot").to_string();
         let none = "expected none with algorithm lawnmower";
-        assert!(error.starts_with(&format!("m.toml: {by}")) && error.contains(none), "{error}");
+        assert!(error.contains(&format!(": {by}")) && error.contains(none), "{error}");
     }
 }
