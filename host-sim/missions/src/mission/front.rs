@@ -123,7 +123,6 @@ pub struct PassedRecord {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub begins: bool,
     /// The vertex.
-    #[serde(flatten)]
     pub vertex: VertexRecord,
 }
 
