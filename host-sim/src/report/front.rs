@@ -7,20 +7,33 @@ use crate::mission::map::{LostRecord, MapRecord, OffRecord, State};
 use crate::mission::results::StepResult;
 use crate::report::table::{Cells, Column};
 
-/// What the planner is told of the front.
-pub(crate) fn told(&FrontTable { radius, speed, watch }: &FrontTable) -> String {
+/// Bends of less than so many radii of its turning circle are too tight for a car: its map is off, and has gaps.
+const TWICE: f64 = 2.0;
+
+/// What the planner is told of the front, and what a car with a turning circle of this radius can follow.
+pub(crate) fn told(
+    &FrontTable { radius, speed, watch }: &FrontTable,
+    circle: Option<f64>,
+) -> String {
+    let follows = circle.map_or(String::new(), |it| {
+        format!(" A car that turns in {it} m follows bends of {:.0} m and more.", TWICE * it)
+    });
     let moves = if speed > 0.0 {
         format!("moves by up to {speed} m a step")
     } else {
         "does not move".to_owned()
     };
     let Some(metres) = watch else {
-        return format!("The planner is told that the front {moves}, and nothing of how it bends.");
+        return format!(
+            "The planner is told that the front {moves}, and nothing of how it bends.{follows}"
+        );
     };
     let bends = radius.map_or("is straight".to_owned(), |radius| {
         format!("bends with a radius of {radius} m or more")
     });
-    format!("The planner is told that the front {bends}, and {moves}. It watches {metres} m of it.")
+    format!(
+        "The planner is told that the front {bends}, and {moves}. It watches {metres} m of it.{follows}"
+    )
 }
 
 /// What is known of the front after each step: where it was known best, and within how much it lies there.
@@ -41,9 +54,12 @@ pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
 pub(crate) const BENDS_MORE: &str = "labels do not follow the front: it turns sharply or moves faster than was told, or the \
                                      sensor reads at random";
 
+/// Gaps are told if they come to more than this share of the map. Places of a map lie a metre or two apart.
+const UNMAPPED: f64 = 0.03;
+
 /// The map in words: sentences, a line each. `unit` is what the record numbers.
 pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
-    let &MapRecord { state, found, lost, vertices, metres, driven, half_width, off } = record;
+    let &MapRecord { state, found, lost, vertices, metres, driven, half_width, off, .. } = record;
     let Some(found) = found else {
         return "The front was not found.\n".to_owned();
     };
@@ -64,6 +80,12 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         text,
         "The map has {vertices} {places} along {metres:.1} m of front; {driven:.1} m were driven for it."
     );
+    if record.gaps > UNMAPPED * metres {
+        let MapRecord { pieces, gaps, .. } = record;
+        let in_pieces =
+            if *pieces > 1 { format!("It is in {pieces} pieces: ") } else { String::new() };
+        let _ = writeln!(text, "{in_pieces}some {gaps:.0} m of the front are not mapped.");
+    }
     if let Some([median, most]) = half_width {
         let _ = writeln!(
             text,

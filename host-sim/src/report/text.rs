@@ -209,7 +209,7 @@ pub(crate) fn why(reason: &str) -> &str {
         "resolution" => "what is uncertain is thinner than the action grid can hit",
         "no line" => "no straight, still line explains the labels",
         "one label" => "the area most likely has one label",
-        "closed" => "all of the front is mapped",
+        "closed" => "the robot has gone along all of the front",
         "worth" => "no label in sight was expected to carry the bits asked for",
         "tolerance" => {
             "what is uncertain is so thin that no label tells more, as positions err by the tolerance"
@@ -384,7 +384,8 @@ fn beginning(title: &str, start: &Start) -> String {
 /// What is possible at the start, at the end of a sentence.
 fn possible(start: &Start) -> String {
     let slopes = || format!("; slopes {} deg are possible.", arcs(&start.slope_arcs));
-    start.front.as_ref().map_or_else(slopes, |told| format!(".\n{}", front::told(told)))
+    let radius = start.vehicle.as_ref().and_then(|it| it.radius());
+    start.front.as_ref().map_or_else(slopes, |told| format!(".\n{}", front::told(told, radius)))
 }
 
 /// The oracle's points, and what is known of the line beside them: a line of text each.

@@ -79,6 +79,10 @@ impl Site {
         self.z
     }
 
+    /// The corners of the lattice.
+    pub(crate) const CORNERS: [Self; 2] =
+        [Self { x: 1 - LIMIT, z: 1 - LIMIT }, Self { x: LIMIT - 1, z: LIMIT - 1 }];
+
     /// The site halfway between two, rounded.
     pub(crate) const fn between(a: Self, b: Self) -> Self {
         Self { x: a.x.midpoint(b.x), z: a.z.midpoint(b.z) }

@@ -1,4 +1,4 @@
-//! Where to read next along a front, for a vehicle that turns on the spot.
+//! Where to read next along a front.
 //!
 //! It looks at some distances along the front, up to one motion. At each it looks at two places: on the median of the
 //! front, and on the robot's own line or near it, where a label still tells enough. A place is worth
@@ -7,14 +7,15 @@
 //! bits of its label + counts * progress - 0.5 (way - progress)
 //! ```
 //!
-//! with way and progress in reaches. Progress counts in full where the front is known to a fifth of a reach, and less where
-//! it is known worse. Where it is hardly known, progress counts against a place, so the robot stays and looks. Where the
+//! with way and progress in reaches. A vehicle that turns on a circle looks farther ahead, and its way includes the turn:
+//! a place within its circle costs a turn all round. Progress counts in full where the front is known to a fifth of a reach,
+//! or of the circle's radius, and less where it is known worse. Where it is hardly known, progress counts against a place, so the robot stays and looks. Where the
 //! last two labels were the same, it looks on the other side. Labels on one side alone do not show that a front bends away.
 
 use crate::belief::curve::Curve;
 use crate::belief::front::limited;
 use crate::belief::predictions::entropy;
-use crate::geometry::approximate::{cross, distance, sqrt};
+use crate::geometry::approximate::{cross, distance, heading_of, sqrt};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
@@ -46,6 +47,10 @@ const STILL: f32 = 0.02;
 const ENDS: u32 = 64;
 const CLOSER: u32 = 6;
 
+/// Radians in a unit of an angle, and in a turn.
+const RADIAN: f32 = core::f32::consts::PI / (1_u32 << 31) as f32;
+const TURN: f32 = core::f32::consts::TAU;
+
 /// Of the cross product the sign alone counts. It is scaled to a share.
 const SIDE: f32 = 1e-9;
 
@@ -57,19 +62,27 @@ fn bits(share: f32, errs: f32) -> f32 {
 /// The best place to go to from a pose; `None` where there is none in the area.
 ///
 /// Cost: 11 times what all Gaussians come to at a place, and their median; some 120,000 instructions.
-pub(crate) fn best_place<G: Workspace>(area: &G, curve: &Curve, pose: Pose) -> Option<Site> {
+pub(crate) fn best_place<G: Workspace>(
+    (area, radius): (&G, f32),
+    curve: &Curve,
+    pose: Pose,
+) -> Option<Site> {
     let errs = curve.error();
     let per_capacity = 1.0 / sqrt(1.0 - entropy(errs) + 1e-3);
+    // A vehicle with a turning circle looks ahead by its radius, too, and knows a front no better than it can follow.
+    let turns = radius / (curve.reach() * UNITS_PER_METRE as f32);
+    let per_capacity = per_capacity * if turns > 1.0 { turns } else { 1.0 };
+    let lost = LOST / (1.0 + turns);
     let (full, none) = (FULL * per_capacity, NONE * per_capacity);
     let per = 1.0 / (curve.reach() * UNITS_PER_METRE as f32);
     let [start, aside] = curve.see(pose.site);
     let side = curve.neglected();
     let mut best: Option<(Site, f32)> = None;
-    for way in WAYS {
+    for way in WAYS.map(|it| (1.0 + turns) * it) {
         let offsets = curve.ahead(start + way);
         let (median, deviation) = (offsets.median(), offsets.deviation());
         let counts = (none - offsets.distance(median)) / (none - full);
-        let counts = 0.5 * (1.0 + LOST) + limited(counts - 0.5 * (1.0 + LOST), 0.5 * (1.0 - LOST));
+        let counts = 0.5 * (1.0 + lost) + limited(counts - 0.5 * (1.0 + lost), 0.5 * (1.0 - lost));
         let beside = ASIDE * if deviation < 1.0 { deviation } else { 1.0 };
         let own = match aside - median {
             _ if side != 0.0 => side * beside,
@@ -80,7 +93,7 @@ pub(crate) fn best_place<G: Workspace>(area: &G, curve: &Curve, pose: Pose) -> O
         for off in [0.0, own] {
             let left = median + off;
             let site = curve.site_at(start + way, left);
-            let long = distance(site - pose.site) * per;
+            let long = way_to(pose, site, radius) * per;
             if long < STILL || !area.contains(site) {
                 continue;
             }
@@ -97,9 +110,22 @@ pub(crate) fn best_place<G: Workspace>(area: &G, curve: &Curve, pose: Pose) -> O
     best.map(|best| best.0)
 }
 
+/// How far a vehicle with a turning circle of this radius drives to a place: it turns first. Lattice units.
+fn way_to(from: Pose, place: Site, radius: f32) -> f32 {
+    let way = place - from.site;
+    let long = distance(way);
+    if radius == 0.0 {
+        return long;
+    }
+    let off = (heading_of(way).since(from.heading).0 as i32).unsigned_abs() as f32 * RADIAN;
+    // It cannot turn to a place within its circle: a turn all round comes before it.
+    let is_within = long < 2.0 * radius * libm::sinf(off);
+    long + radius * if is_within { TURN } else { off }
+}
+
 /// The motion that ends nearest to a place, and how many ends were looked at.
 pub(crate) fn towards<D: Dynamics, G: Workspace>(
-    (dynamics, area): (&D, &G),
+    (dynamics, area, radius): (&D, &G, f32),
     pose: Pose,
     place: Site,
 ) -> Option<(Leg, u32)> {
@@ -110,7 +136,7 @@ pub(crate) fn towards<D: Dynamics, G: Workspace>(
     let mut best: Option<(Leg, f32)> = None;
     let share = |end: Pose| 0.5 + SIDE * cross(way, end.site - pose.site);
     let find = |leg: Leg, _: f32| {
-        let off = distance(place - leg.1.site);
+        let off = way_to(leg.1, place, radius);
         let is_better = best.is_none_or(|best| off < best.1);
         if is_better {
             best = Some((leg, off));

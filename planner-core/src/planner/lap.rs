@@ -3,15 +3,13 @@
 //! It goes along the front as it faced at the start. So two robots that start back to back part.
 
 use crate::belief::front::Waist;
-use crate::geometry::approximate::distance;
 use crate::geometry::heading::Heading;
-use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 
 /// A front is closed when it has turned by this, three quarters of a turn, and is back; in units of 2^-32 turns.
 const TURNED: i64 = 3 << 30;
 
-/// Back is within so many reaches of where the front was found.
+/// Back is within so many reaches of where the front was found, and beside it as far as the front may lie off there.
 const BACK: f32 = 1.0;
 
 /// The way along a front since it was found.
@@ -32,6 +30,8 @@ pub struct Lap {
     borders: u8,
     /// Whether the robot drives back to where it was found.
     is_back: bool,
+    /// Whether later labels have told better where that is.
+    is_settled: bool,
 }
 
 impl Lap {
@@ -44,6 +44,7 @@ impl Lap {
         is_closed: false,
         borders: 0,
         is_back: false,
+        is_settled: false,
     };
 
     /// Whether a mission can have turned so far.
@@ -89,13 +90,14 @@ impl Lap {
         self.is_closed
     }
 
-    /// Whether all of the front is mapped: it is closed, or led out of the area twice.
+    /// Whether the robot has gone along all of the front: it is closed, or led out of the area twice.
     pub(crate) const fn is_over(&self) -> bool {
         self.is_closed || self.borders >= 2
     }
 
-    /// Takes in where the front is beside the robot, if it is found.
-    pub(crate) fn observe(&mut self, found: Option<Waist>, site: Site, reach: f32) {
+    /// Takes in where the front is beside the robot, if it is found. It may have moved by so many metres since it was
+    /// found first; a reach has so many.
+    pub(crate) fn observe(&mut self, found: Option<Waist>, (reach, moved): (f32, f32)) {
         self.steps = self.steps.saturating_add(1);
         let Some(waist) = found else { return };
         let Some((begun, last)) = &mut self.begun else {
@@ -104,14 +106,25 @@ impl Lap {
         };
         self.turned += i64::from(waist.heading.since(*last).0 as i32);
         *last = waist.heading;
-        let is_back = distance(site - begun.site) < BACK * reach;
-        self.is_closed |= is_back && self.turned.abs() >= TURNED;
+        let [ahead, aside] = [begun.ahead(waist.site), begun.aside(waist.site)].map(f32::abs);
+        let off = BACK * reach + begun.ninety() + waist.ninety() + moved;
+        self.is_closed |= ahead < BACK * reach && aside < off && self.turned.abs() >= TURNED;
+    }
+
+    /// Takes in the first place of the map, as it is known once labels change it no more.
+    pub(crate) fn settle(&mut self, first: Waist) {
+        if let Some((begun, _)) = &mut self.begun
+            && !core::mem::replace(&mut self.is_settled, true)
+        {
+            *begun = first;
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::lattice::Site;
 
     fn waist(x: f64, z: f64, angle: f64) -> Waist {
         Waist {
@@ -123,7 +136,8 @@ mod tests {
         }
     }
 
-    const REACH: f32 = 2.0 * 65_536.0;
+    /// A reach, and how far the front has moved.
+    const STILL: (f32, f32) = (2.0, 0.0);
 
     /// Against the front's direction, and lost for a while.
     #[test]
@@ -133,7 +147,7 @@ mod tests {
             let angle = -f64::from(*step) * core::f64::consts::PI / 36.0;
             let (sin, cos) = libm::sincos(angle);
             let it = waist(20.0 * sin, -20.0 * cos, angle);
-            lap.observe((*step != 30).then_some(it), it.site, REACH);
+            lap.observe((*step != 30).then_some(it), STILL);
             lap.is_closed()
         });
         assert_eq!((closed, lap.is_over()), (Some(71), true));
@@ -154,7 +168,7 @@ mod tests {
     #[test]
     fn it_drives_back_from_the_first_border_and_is_over_at_the_second() {
         let mut lap = Lap::NONE;
-        lap.observe(Some(waist(1.0, 2.0, 0.0)), Site::ORIGIN, REACH);
+        lap.observe(Some(waist(1.0, 2.0, 0.0)), STILL);
         lap.turn(true);
         assert!(lap.back() == Some(waist(1.0, 2.0, 0.0)) && !lap.is_over());
         lap.arrive();
@@ -174,7 +188,7 @@ mod tests {
         let back =
             (0..12).map(|k| waist(20.0 - 2.0 * f64::from(k), 1.5, core::f64::consts::PI - 0.01));
         for it in out.chain([waist(20.0, 0.7, 1.5)]).chain(back) {
-            lap.observe(Some(it), it.site, REACH);
+            lap.observe(Some(it), STILL);
             assert!(!lap.is_closed());
         }
     }

@@ -5,22 +5,20 @@
 //! - **Search**: as long as nothing is known of the front, it drives along a route over the area (`quest.rs`).
 //! - **Close**: the curve begins between two true labels that differ. If labels may be wrong, a grid of lines in a square
 //!   about the place closes in first (`hunt.rs`).
-//! - **Follow**: a vehicle that turns on the spot goes to the best place along the front (`along.rs`). For any other an end
-//!   of the next motion is worth the information of its label, and its progress along the front. It is judged by the place
-//!   where it would have turned along the front again, and pays for its way there.
+//! - **Follow**: the robot goes to the best place along the front (`along.rs`).
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it.
 //! - **Go back**: where the front leaves the area, it drives to where it began, without labels, and goes the other way.
 //! - **Begin again**: an alarm of the curve's evidence says that the front bends more tightly than any gait, or is lost.
 //!   The curve begins again at the last place that was passed. At the next alarm without a place, or where labels say that
 //!   there is no front, it is sought near by, and then as at the start.
 //!
-//! A plan looks at [`LOOKED_AT`] places at most. A mission ends where no front is left to find, where there is no way on,
+//! A mission ends where no front is left to find, where there is no way on,
 //! where the robot is back at its last label, or where [all of the front](Track::until_closed) is mapped.
 
 use crate::belief::curve::{Curve, CurveMemory, nearest_pair};
 use crate::belief::evidence::Alarm;
 use crate::belief::field::{REMEMBERED, Seeking};
-use crate::belief::front::{Front, FrontMemory, NINETY, Tracker, Waist};
+use crate::belief::front::{Front, FrontMemory, Tracker, Waist};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Reading, Sample};
@@ -33,28 +31,18 @@ use crate::geometry::area::Area;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::aim::{Aim, Onward, Turned};
+use crate::planner::aim::{Aim, Onward};
 use crate::planner::along::{best_place, towards};
 use crate::planner::front_state::FrontState;
 use crate::planner::hunt::Hunt;
 use crate::planner::lap::Lap;
 use crate::planner::one_label::OneLabel;
 use crate::planner::quest::{Phase, QuestMemory};
-use crate::planner::scout::{Best, Ends, FAINT, LOOKED_AT, Scout};
+use crate::planner::scout::{Best, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, Stage, StopReason};
-
-/// The ends of motions that a plan looks at for a vehicle that needs a turning circle.
-const ENDS: Ends = Ends { circles: 3, beside: 0, most: LOOKED_AT };
-
-/// Progress counts in full where the half-width is below this share of the [span](Scout::span). It does not count where the
-/// front would not count as found.
-const FULL: f32 = 0.5;
-
-/// A label that tells less than this share of what one can tell is not worth its way.
-const LEAST: f32 = 0.1;
 
 /// After so many alarms without a place in between it is lost.
 const LOST: u8 = 2;
@@ -98,7 +86,7 @@ pub struct Track<D, G = Area> {
     lap: Lap,
     /// The pose at the last label that was read at the end of a motion.
     heard_at: Option<Pose>,
-    /// Whether it ends once all of the front is mapped.
+    /// Whether it ends once the robot has gone along all of the front.
     ends: bool,
 }
 
@@ -134,7 +122,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         let area = aimed_for(area, &dynamics, noise.tolerance)?;
         let mut track = Self::of((area, dynamics), front, false);
         track.hunt.tracker.restart(area.whole().bounds(), noise, &[]);
-        track.curve.restart((track.hunt.scout.span() * METRE, front), noise);
+        track.begin_curve(noise);
         // The usual radius of a patch suits every area.
         track.begin(Seeking::USUAL)?;
         Ok(track)
@@ -154,6 +142,14 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         }
     }
 
+    /// Nothing is known of a front but how fast it moves.
+    fn begin_curve(&mut self, noise: Noise<AnyReliability>) {
+        let scout = &self.hunt.scout;
+        let bounds = scout.area.whole().bounds();
+        let map = ([bounds.min(), bounds.max()], scout.width());
+        self.curve.restart((scout.reach() * METRE, self.front), map, noise);
+    }
+
     fn begin(&mut self, seeking: Seeking) -> Result<(), SetupError> {
         self.hunt.scout.begin(seeking, self.front, (self.hunt.tracker.reliability(), false))
     }
@@ -170,7 +166,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         self.hunt.scout.width()
     }
 
-    /// The same, but it ends once all of the front is mapped: it is [closed](Self::is_closed), or it has been followed to
+    /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been followed to
     /// the border at both ends.
     #[must_use]
     pub fn until_closed(self) -> Self {
@@ -280,8 +276,11 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// Keeps the way along the front in mind, and turns where it leaves the area.
     fn keep_lap(&mut self, pose: Pose) {
         let (reach, found) = (self.hunt.scout.reach(), self.found());
-        self.lap.observe(found, pose.site, reach);
+        self.lap.observe(found, (reach * METRE, self.front.pace() * self.lap.age()));
         let curve = &mut self.curve;
+        if let Some(first) = curve.mapped().iter().find(|it| it.begins) {
+            self.lap.settle(first.waist);
+        }
         if let Some(waist) = self.lap.back() {
             if distance(waist.site - pose.site) <= reach {
                 curve.begin_at(waist, (curve.is_flipped(), self.lap.age()));
@@ -290,7 +289,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
             return;
         }
         let Some(waist) = found else { return };
-        let aim = Aim::new(waist, pose, !curve.is_flipped());
+        let aim = Aim::new(waist, !curve.is_flipped());
         if aim.onward((&self.hunt.scout.area, reach), pose, 1) == Onward::Over {
             let moved = self.front.pace() * self.lap.age();
             let is_near = moved <= MOVED * reach * METRE;
@@ -320,14 +319,13 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     fn follow(&mut self, pose: Pose) -> Plan {
         let (scout, curve) = (&self.hunt.scout, &self.curve);
         let (reach, radius) = (scout.reach(), scout.radius());
-        let aim = Aim::new(curve.now(), pose, !curve.is_flipped());
+        let aim = Aim::new(curve.now(), !curve.is_flipped());
         let with = (&scout.area, reach);
-        let (best, examined) = if radius > 0.0 {
-            self.best_end(&aim, pose)
-        } else {
-            let leg = best_place(&scout.area, curve, pose)
-                .and_then(|place| towards((&scout.dynamics, &scout.area), pose, place));
-            (leg.map(|it| Best { leg: it.0, worth: 0.0 }), leg.map_or(0, |it| it.1))
+        let place = best_place((&scout.area, radius), curve, pose);
+        let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
+        let (best, examined) = match leg {
+            Some((leg, examined)) => (Some(Best { leg, worth: 0.0 }), examined),
+            None => (None, 0),
         };
         // Where no label tells anything it goes on along the front, no nearer than it can turn.
         let about = ((radius / reach) as u16).max(1);
@@ -352,22 +350,6 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
             scout.quest.lose(&scout.area);
             self.hunt.scout.search(pose).unwrap_or(Plan::Stop(StopReason::Cornered))
         })
-    }
-
-    /// The best end of the next motion for a vehicle that needs a turning circle.
-    fn best_end(&self, aim: &Aim, pose: Pose) -> (Option<Best>, u32) {
-        let (scout, curve) = (&self.hunt.scout, &self.curve);
-        let (reach, span, radius) = (scout.reach(), scout.span(), scout.radius());
-        let share = |end: Pose| curve.share_above(aim.turned(end, radius).site);
-        let worth = |end: Pose, share: f32| {
-            let told = curve.tells(share);
-            let Turned { site, way } = aim.turned(end, radius);
-            let half = NINETY * aim.waist.deviation_beside(site);
-            let progress = aim.progress(site - pose.site, half, (span, FULL));
-            let back = way + aim.shift(site, half, radius);
-            (told > LEAST).then_some(told + (progress - back) / reach)
-        };
-        scout.best_end(pose, ENDS, share, worth)
     }
 }
 
@@ -471,7 +453,7 @@ impl<D: Dynamics, G: Workspace> Restart for Track<D, G> {
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at) = (Lap::NONE, None);
         self.hunt.restart(noise, &[])?;
-        self.curve.restart((self.hunt.scout.span() * METRE, self.front), noise.into());
+        self.begin_curve(noise.into());
         self.begin(self.hunt.scout.quest.seeking())?;
         self.know(given);
         Ok(())

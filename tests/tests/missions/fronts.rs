@@ -164,6 +164,38 @@ fn go_along<D: Dynamics>(dynamics: D, p: f64, number: u64) {
     expect(format!("followed by vehicle {number}, p = {p}"), flown.followed, 140.0..);
 }
 
+/// Cars go all round a bend of five radii of their turning circles and more, and all that they map lies in the area.
+#[test]
+fn cars_go_round_wide_bends() {
+    let area = Area::metres([-28.0; 2], [28.0; 2]).expect("an area");
+    for (radius_mm, p, off) in
+        [(1_000, 1.0, 0.15), (1_000, 0.9, 0.5), (4_000, 1.0, 0.4), (4_000, 0.9, 0.8)]
+    {
+        let flown = ensemble::fly(cases(10, 100), |number| {
+            let mut rng = ensemble::rng(48, number);
+            let world = TrueFront::circle(20.0, &mut rng);
+            let planner = planner((area, car(7_000, radius_mm, 2_000)), noise(p));
+            let planner = planner.knowing(&world.given()).until_closed();
+            let (start, mut found) = (world.start(&mut rng), Vec::new());
+            let course = Course { motions: 300, steps: 1.0, p };
+            let flown = follow(&world, planner, (course, start), &mut rng, |planner, _, _| {
+                for MapPlace { waist, .. } in planner.belief().mapped() {
+                    assert!(area.contains(waist.site), "{number}: {waist:?}");
+                    let off = world.distance(Point2::from(waist.site), 0.0);
+                    found.push((off, off <= waist.half_width(0.9)));
+                }
+            });
+            (flown.closed_after, found)
+        });
+        let what = format!("a circle of {radius_mm} mm, p {p}");
+        let (closed, found): (Vec<_>, Vec<_>) = flown.into_iter().unzip();
+        let found = found.concat();
+        expect(format!("{what}, closed"), percent(&closed, Option::is_some), 80.0..);
+        expect(format!("{what}, covered"), percent(&found, |it| it.1), 85.0..);
+        expect(format!("{what}, off"), median(found.iter().map(|it| it.0)), ..off);
+    }
+}
+
 #[test]
 fn a_closed_front_is_noticed() {
     ensemble::fly(cases(8, 60), |number| {

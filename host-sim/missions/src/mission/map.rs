@@ -20,6 +20,12 @@ pub struct MapRecord {
     pub vertices: usize,
     /// Metres of front that they go along, to and fro.
     pub metres: f64,
+    /// The pieces of the map.
+    #[serde(default)]
+    pub pieces: usize,
+    /// Metres between them that are not mapped, in straight lines.
+    #[serde(default)]
+    pub gaps: f64,
     /// Metres driven since it was found.
     pub driven: f64,
     /// The half-widths (90 %), metres: their median and the largest. Null without vertices.
@@ -106,7 +112,7 @@ impl MapRecord {
         Self { off, ..Self::after(steps, is_over) }
     }
 
-    /// Of the steps of a mission or the rows of a track. `is_over` says whether all of the front is mapped.
+    /// Of the steps of a mission or the rows of a track. `is_over` says whether the robot has gone along all of the front.
     pub fn after(steps: &[Mapped], is_over: bool) -> Self {
         let pieces = pieces(steps);
         let is_closed = is_over && turns(&pieces) > ROUND;
@@ -115,7 +121,8 @@ impl MapRecord {
             _ => 0.0,
         };
         let metres: f64 = pieces.iter().flat_map(|piece| piece.windows(2)).map(along).sum();
-        let vertices = pieces.concat();
+        let gaps = gaps(&pieces, is_closed);
+        let (number, vertices) = (pieces.len(), pieces.concat());
         let found = steps.iter().find(|it| it.is_known);
         let known = steps.iter().rfind(|it| it.is_known);
         let (last, end) = (vertices.last(), steps.last());
@@ -135,6 +142,8 @@ impl MapRecord {
             vertices: vertices.len(),
             // The sum of nothing is -0.
             metres: 0.0 + metres,
+            pieces: number,
+            gaps,
             driven: found.map_or(0.0, |it| whole - it.metres),
             half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
             off: None,
@@ -153,6 +162,21 @@ fn turns(pieces: &Places) -> f64 {
         libm::remainder(by, std::f64::consts::TAU)
     };
     pieces.iter().flat_map(|it| it.windows(2)).map(turn).sum::<f64>().abs()
+}
+
+/// Metres between the pieces in straight lines, and of a closed front from the last place to the first. A piece begins
+/// near where the one before ended, or the robot has driven back to the first place.
+fn gaps(pieces: &Places, is_closed: bool) -> f64 {
+    let Some((_, first)) = pieces.first().and_then(|piece| piece.first()) else { return 0.0 };
+    let ends = pieces.iter().filter_map(|piece| piece.last());
+    let starts = pieces.iter().skip(1).filter_map(|piece| piece.first());
+    let off = |from: &VertexRecord, to: &VertexRecord| (to.at() - from.at()).norm();
+    let between = ends
+        .clone()
+        .zip(starts)
+        .map(|((_, end), (_, start))| off(end, start).min(off(first, start)));
+    let last = ends.last().filter(|_| is_closed).map_or(0.0, |(_, end)| off(end, first));
+    between.sum::<f64>() + last
 }
 
 /// Metres along the front between two vertices of one piece of the map.

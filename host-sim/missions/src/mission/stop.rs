@@ -37,7 +37,7 @@ pub(crate) struct StopTable {
     level: Option<f64>,
     /// Whether an audit comes before the promise [default: true]
     audit: Option<bool>,
-    /// Of `track`: whether the mission ends once all of the front is mapped [default: true]
+    /// Of `track`: whether the mission ends once the robot has gone along all of the front [default: true]
     closed: Option<bool>,
 }
 

@@ -91,6 +91,11 @@ impl Source {
 }
 
 impl VehicleTable {
+    /// The radius of a car's turning circle, metres.
+    pub const fn radius(&self) -> Option<f64> {
+        self.radius
+    }
+
     /// The step of turning, if one was asked for; radians.
     pub(crate) const fn turn_step(&self) -> Option<f64> {
         self.turn_step

@@ -119,7 +119,8 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     } else {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
-    about.extend(start.front.as_ref().map(front::told));
+    let radius = start.vehicle.as_ref().and_then(|it| it.radius());
+    about.extend(start.front.as_ref().map(|told| front::told(told, radius)));
     let tolerance = mission.config.tolerance.metres();
     if let Some(tolerance) = &start.tolerance {
         about.push(format!("{}.", text::tolerance(tolerance)));

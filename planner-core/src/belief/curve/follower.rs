@@ -111,6 +111,8 @@ pub struct Curve {
     pub(super) reach: f32,
     /// Metres in a unit of time.
     pub(super) pace: f32,
+    /// Places of the map lie between these corners, and are known to within so many metres.
+    map: ([Site; 2], f32),
     pub(super) noise: Noise<AnyReliability>,
     /// What labels have said of a reliability that nobody knows.
     pub(super) learnt: Option<Learnt>,
@@ -124,9 +126,9 @@ pub struct Curve {
     pub(super) since: f32,
     pub(super) evidence: Evidence,
     /// The last label, and how many were the same.
-    pub(super) run: (Option<Label>, u32),
+    pub(super) run: (Option<Label>, u8),
     /// Places that have left the window since the last plan, the oldest first.
-    pub(super) mapped: heapless::Vec<MapPlace, PLACES>,
+    pub(super) mapped: heapless::Vec<MapPlace, PLACES, u8>,
     /// The probability that there is no front here, and all of the ground is +1, or is -1.
     pub(super) nowhere: [f32; 2],
     /// How often labels spoke against it since the last place that was passed.
@@ -155,7 +157,7 @@ impl Curve {
             return Err(REACH);
         }
         let mut curve = Self::NONE;
-        curve.restart((reach as f32, front), noise.into());
+        curve.restart((reach as f32, front), (Site::CORNERS, f32::INFINITY), noise.into());
         let pair = nearest_pair(given).ok_or(ONE_LABEL)?;
         curve.begin(pair, given);
         curve.face(facing);
@@ -172,6 +174,7 @@ impl Curve {
         Self {
             reach: 1.0,
             pace: 0.0,
+            map: (Site::CORNERS, f32::INFINITY),
             noise: NO_NOISE,
             learnt: None,
             arc: Arc { site: Site::ORIGIN, heading: Heading(0), bend: 0.0 },
@@ -189,8 +192,15 @@ impl Curve {
         }
     };
 
-    /// Forgets all, where it is: it is large. The longest motion has so many metres.
-    pub(crate) fn restart(&mut self, (reach, front): (f32, Front), noise: Noise<AnyReliability>) {
+    /// Forgets all, where it is: it is large. The longest motion has so many metres. The map lies between two
+    /// corners, and its places are known to within so many metres.
+    pub(crate) fn restart(
+        &mut self,
+        (reach, front): (f32, Front),
+        map: ([Site; 2], f32),
+        noise: Noise<AnyReliability>,
+    ) {
+        self.map = map;
         let prior = noise.reliability.unknown();
         self.learnt = prior.map(|it| Learnt::prior(it.parameters().map(|it| it as f32)));
         (self.reach, self.pace, self.noise) = (reach, front.pace(), noise);
@@ -347,14 +357,30 @@ impl Curve {
         let _ = self.passed.push_front(Passed { arc: self.arc, age: 0.0, begins }); // there is room
     }
 
+    /// The last place is done with: it is on the map if it counts. If not, a piece of the map begins with the next.
     fn drop_last(&mut self) {
-        if let Some(gone) = self.place(self.passed.len().saturating_sub(1)) {
+        let gone = self.place(self.passed.len().saturating_sub(1));
+        let _ = self.passed.pop_back();
+        let Some(gone) = gone else { return };
+        if self.counts(&gone.waist) {
             if self.mapped.is_full() {
                 self.mapped.remove(0);
             }
             let _ = self.mapped.push(gone); // there is room
+        } else {
+            match self.passed.back_mut() {
+                Some(next) => next.begins = true,
+                None => self.is_fresh = true,
+            }
         }
-        let _ = self.passed.pop_back();
+    }
+
+    /// Whether a place is known well enough for the map, and lies in its area.
+    pub(super) fn counts(&self, waist: &Waist) -> bool {
+        let (([min, max], within), site) = (self.map, waist.site);
+        let is_in =
+            (min.x()..=max.x()).contains(&site.x()) && (min.z()..=max.z()).contains(&site.z());
+        is_in && waist.ninety() <= within
     }
 
     /// A front that moves leaves the places behind. They are done with when that widens them by more than labels narrow them.

@@ -24,7 +24,7 @@ pub struct CurveMemory {
     since: f32,
     learnt: Option<Learnt>,
     evidence: Evidence,
-    run: (Option<Label>, u32),
+    run: (Option<Label>, u8),
     nowhere: [f32; 2],
     doubts: u8,
     is_begun: bool,

@@ -68,9 +68,10 @@ impl Curve {
         (self.is_sure() && now.ninety() <= within).then_some(now)
     }
 
-    /// The places passed that may still change, the last one first.
+    /// The places passed that may still change, and that are known well enough for a map; the last one first.
     pub fn places(&self) -> impl Iterator<Item = MapPlace> {
-        (0..self.passed.len()).filter_map(|number| self.place(number))
+        let places = (0..self.passed.len()).filter_map(|number| self.place(number));
+        places.filter(|it| self.counts(&it.waist))
     }
 
     /// Where the front crosses the line through a site that is square to a heading, on average, and how well that is

@@ -60,13 +60,6 @@ impl Waist {
         let [x, z] = [x, z].map(|it| (it * ahead * UNITS_PER_METRE as f32) as i32);
         self.site.step(Vector::new(x, z)?).ok()
     }
-
-    /// The standard deviation of the front beside a site, metres: that of its direction counts by the distance.
-    pub(crate) fn deviation_beside(&self, site: Site) -> f32 {
-        let [x, z] = metres(site - self.site);
-        let square = (x * x + z * z) * self.turn_deviation * self.turn_deviation;
-        sqrt(self.deviation * self.deviation + square)
-    }
 }
 
 /// A front is found where its direction has a deviation below this, radians.
