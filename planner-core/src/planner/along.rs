@@ -43,6 +43,17 @@ const ASIDE: f32 = 0.5;
 /// A shorter way is none, reaches.
 const STILL: f32 = 0.02;
 
+/// A label is certain where the other one has at most this probability, if labels are true. It is sought so far ahead, in
+/// reaches, from so many deviations and reaches beside the front on, by a factor.
+const SURE: f32 = 0.005;
+const AHEAD: f32 = 0.9;
+const CERTAIN: f32 = 2.5;
+const LEAST: f32 = 0.05;
+const FARTHER: f32 = 1.3;
+
+/// The same once the robot is there.
+const NEARLY: f32 = 0.03;
+
 /// Ends of motions that are looked at for the one nearest to a place, and how often beside the best.
 const ENDS: u32 = 64;
 const CLOSER: u32 = 6;
@@ -121,6 +132,35 @@ fn way_to(from: Pose, place: Site, radius: f32) -> f32 {
     // It cannot turn to a place within its circle: a turn all round comes before it.
     let is_within = long < 2.0 * radius * libm::sinf(off);
     long + radius * if is_within { TURN } else { off }
+}
+
+/// Whether a label is certain where this share of the curves lies above.
+pub(crate) fn is_sure(share: f32) -> bool {
+    share < NEARLY || share > 1.0 - NEARLY
+}
+
+/// A place ahead whose label is certain, on one side of the front: what tells a wrong model. `None` where none lies so near
+/// to the front, in reaches, or where it is outside the area.
+pub(crate) fn certain_place<G: Workspace>(
+    area: &G,
+    curve: &Curve,
+    pose: Pose,
+    (side, farthest): (f32, f32),
+) -> Option<Site> {
+    let [start, _] = curve.see(pose.site);
+    let offsets = curve.ahead(start + AHEAD);
+    let (median, deviation) = (offsets.median(), offsets.deviation());
+    let mut off = CERTAIN * deviation + LEAST;
+    while off < farthest {
+        let left = median + side * off;
+        let below = offsets.below(left);
+        if below < SURE || below > 1.0 - SURE {
+            let site = curve.site_at(start + AHEAD, left);
+            return area.contains(site).then_some(site);
+        }
+        off *= FARTHER;
+    }
+    None
 }
 
 /// The motion that ends nearest to a place, and how many ends were looked at.

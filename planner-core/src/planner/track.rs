@@ -6,6 +6,8 @@
 //! - **Close**: the curve begins between two true labels that differ. If labels may be wrong, a grid of lines in a square
 //!   about the place closes in first (`hunt.rs`).
 //! - **Follow**: the robot goes to the best place along the front (`along.rs`).
+//! - **Audit**: a follower reads where either label is as likely, so no label can surprise it. From time to time it reads
+//!   one on certain ground, on either side in turn. Those tell a sensor that reads at random or the opposite.
 //! - **Go round**: where a keep-out lies on the front, the robot goes to the first place beyond it.
 //! - **Go back**: where the front leaves the area, it drives to where it began, without labels, and goes the other way.
 //! - **Begin again**: an alarm of the curve's evidence says that the front bends more tightly than any gait, or is lost.
@@ -32,7 +34,7 @@ use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::aim::{Aim, Onward};
-use crate::planner::along::{best_place, towards};
+use crate::planner::along::{best_place, certain_place, is_sure, towards};
 use crate::planner::front_state::FrontState;
 use crate::planner::hunt::Hunt;
 use crate::planner::lap::Lap;
@@ -53,6 +55,15 @@ const ELSEWHERE: f32 = 0.97;
 /// The grid for labels that may be wrong, about where a front was crossed.
 const DIRECTIONS: usize = 16;
 const OFFSETS: usize = 16;
+
+/// After so many labels one is read on certain ground, if that is near; after so many it may be far.
+const NEARBY: u8 = 10;
+const FAR: u8 = 17;
+const AUDIT: u8 = FAR + 3;
+
+/// Near and far are so many reaches beside the front.
+const BESIDE: f32 = 0.5;
+const ANYWHERE: f32 = 2.0;
 
 /// A front may have moved on by so many reaches where the robot drives back to it.
 const MOVED: f32 = 2.0;
@@ -86,6 +97,8 @@ pub struct Track<D, G = Area> {
     lap: Lap,
     /// The pose at the last label that was read at the end of a motion.
     heard_at: Option<Pose>,
+    /// Which label along the front is the next, of as many as there are from one on certain ground to the next but one.
+    turn: u8,
     /// Whether it ends once the robot has gone along all of the front.
     ends: bool,
 }
@@ -97,6 +110,7 @@ pub struct TrackMemory {
     silence: Silence,
     lap: Lap,
     heard_at: Option<Pose>,
+    turn: u8,
     quest: QuestMemory,
     /// Before the curve begins.
     closing: Option<FrontMemory<DIRECTIONS, OFFSETS, 1>>,
@@ -138,6 +152,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
             curve: Curve::NONE,
             lap: Lap::NONE,
             heard_at: None,
+            turn: 0,
             ends,
         }
     }
@@ -321,7 +336,16 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         let (reach, radius) = (scout.reach(), scout.radius());
         let aim = Aim::new(curve.now(), !curve.is_flipped());
         let with = (&scout.area, reach);
-        let place = best_place((&scout.area, radius), curve, pose);
+        // On either side in turn.
+        let side = if self.turn < AUDIT { 1.0 } else { -1.0 };
+        let farthest = match self.turn % AUDIT {
+            0..NEARBY => 0.0,
+            NEARBY..FAR => BESIDE,
+            _ => ANYWHERE,
+        };
+        let farthest = if self.found().is_some() { farthest } else { 0.0 };
+        let audit = certain_place(&scout.area, curve, pose, (side, farthest));
+        let place = audit.or_else(|| best_place((&scout.area, radius), curve, pose));
         let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
         let (best, examined) = match leg {
             Some((leg, examined)) => (Some(Best { leg, worth: 0.0 }), examined),
@@ -399,7 +423,12 @@ impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
         if self.lap.back().is_none() {
             self.curve.moved(pose.site, 1.0);
             if let Some(reading) = reading {
+                let is_sure = is_sure(self.curve.share_above(pose.site));
                 self.curve.observe_within(pose.site, reading, tolerance)?;
+                self.turn = match self.turn {
+                    it if is_sure && it % AUDIT >= NEARBY => (it / AUDIT + 1) % 2 * AUDIT,
+                    it => (it + 1) % (2 * AUDIT),
+                };
             }
             self.judge(pose);
         }
@@ -451,7 +480,7 @@ impl<D: Dynamics, G: Workspace> Restart for Track<D, G> {
 
     /// Begins again in the rectangle around its area. Nothing is told of how likely fronts are.
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
-        (self.lap, self.heard_at) = (Lap::NONE, None);
+        (self.lap, self.heard_at, self.turn) = (Lap::NONE, None, 0);
         self.hunt.restart(noise, &[])?;
         self.begin_curve(noise.into());
         self.begin(self.hunt.scout.quest.seeking())?;
@@ -465,12 +494,13 @@ impl<D: Dynamics, G: Workspace> Persist for Track<D, G> {
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { silence, quest, .. } = &self.hunt.scout;
-        let (silence, quest, lap, heard_at) = (*silence, quest.memory(), self.lap, self.heard_at);
+        let (silence, quest) = (*silence, quest.memory());
+        let Self { lap, heard_at, turn, .. } = *self;
         let closing = (!self.curve.is_begun()).then(|| self.hunt.tracker.log());
         Snapshot::new(
             self.hunt.scout.mark(Kind::Track, self.curve.mark()),
             self.curve.log(),
-            TrackMemory { silence, lap, heard_at, quest, closing },
+            TrackMemory { silence, lap, heard_at, turn, quest, closing },
         )
     }
 
@@ -484,6 +514,7 @@ impl<D: Dynamics, G: Workspace> Persist for Track<D, G> {
             self.hunt.tracker.replay(closing)?;
         }
         (self.lap, self.heard_at) = (memory.lap, memory.heard_at);
+        self.turn = memory.turn % (2 * AUDIT);
         self.hunt.scout.silence = memory.silence;
         Ok(())
     }

@@ -11,9 +11,10 @@ use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use host_sim::campaign::fronts::who::Who;
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::Dynamics;
+use planner_core::watch::Evidence;
 use planner_core::{
-    AnyVehicle, Area, Front, Heading, Holonomic, Hull, KeepOut, Label, MapPlace, Noise, Plan,
-    Planner as _, PolygonArea, Pose, Sample, Site, Track, Unicycle, Workspace,
+    AnyVehicle, Area, Belief as _, Front, Heading, Holonomic, Hull, KeepOut, Label, MapPlace,
+    Noise, Plan, Planner as _, PolygonArea, Pose, Sample, Site, Track, Unicycle, Workspace,
 };
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -193,6 +194,37 @@ fn cars_go_round_wide_bends() {
         expect(format!("{what}, closed"), percent(&closed, Option::is_some), 80.0..);
         expect(format!("{what}, covered"), percent(&found, |it| it.1), 85.0..);
         expect(format!("{what}, off"), median(found.iter().map(|it| it.0)), ..off);
+    }
+}
+
+/// A follower that reads where either label is as likely has to go elsewhere to notice these.
+#[test]
+fn a_sensor_that_fails_while_a_front_is_followed_raises_an_alarm() {
+    for (p, fault, least) in
+        [(1.0, 0.5, 80.0), (0.9, 0.5, 50.0), (1.0, 1.0, 95.0), (0.9, 1.0, 40.0)]
+    {
+        let noticed = ensemble::fly(cases(20, 100), |number| {
+            let mut rng = ensemble::rng(49, number);
+            let world = TrueFront::circle(40.0, &mut rng);
+            let mut planner = planner((sea().expect("an area"), unicycle()), noise(p));
+            planner = planner.knowing(&world.given());
+            let (mut pose, mut evidence) = (world.start(&mut rng), Evidence::NONE);
+            (1..=260).find(|motion| {
+                let Plan::Move(next) = planner.plan(pose) else { return false };
+                pose = next.target;
+                let label = world.sensed(Point2::from(pose.site), 0.0, p, &mut rng);
+                let label = if *motion > 60 && rng.random_bool(fault) { -label } else { label };
+                if next.wants_label {
+                    evidence.observe(label, planner.belief().chance_of(pose.site, label));
+                }
+                planner.observe(pose, next.wants_label.then(|| label.into())).expect("a label");
+                evidence.alarm().is_some_and(|it| it.is_grave())
+            })
+        });
+        let what = format!("p = {p}, of labels {fault} false");
+        let before = percent(&noticed, |it| it.is_some_and(|at| at <= 60));
+        expect(format!("{what}, alarms before"), before, ..=5.0);
+        expect(format!("{what}, noticed"), percent(&noticed, Option::is_some), least..);
     }
 }
 
