@@ -231,11 +231,14 @@ impl Column {
         }
         sort(thresholds);
         let Lines { bottom, from, inside, to } = Lines::among(thresholds)?;
-        let mut sum = bottom;
-        let peak = inside.iter().fold(density.log(bottom), |peak, it| {
-            sum += it.step.0;
-            peak.max(density.log(sum))
-        });
+        // That of the pieces that have a width: between labels of one place there is no line.
+        let (mut sum, mut at, mut peak) = (bottom, from, i32::MIN);
+        for (offset, step) in inside.iter().map(|it| (it.offset, it.step.0)).chain([(to, 0)]) {
+            if offset > at {
+                peak = peak.max(density.log(sum));
+            }
+            (sum, at) = (sum + step, offset);
+        }
         let mut knots: List<Knot, S> = List::filled(Knot::NONE);
         pile_up(&mut knots, density.below(bottom, peak), from, inside, to);
         self.keep(&knots);

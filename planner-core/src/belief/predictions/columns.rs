@@ -233,7 +233,7 @@ fn cut(columns: &mut [Column]) {
     for column in columns {
         let mass = column.mass();
         if mass > 0.0 {
-            column.scale(cut(mass) / (mass * total));
+            column.scale(cut(mass) / mass / total); // a product could be too small for a number
         }
     }
 }
@@ -324,6 +324,24 @@ mod tests {
             let columns = columns(&[(sample(4, 3, Label::Positive), 0.7), (above, p)]);
             assert!((columns.share_above(above.site) - share).abs() < 1e-5);
         }
+    }
+
+    #[test]
+    fn directions_that_hardly_any_line_has_are_numbers() {
+        let mut columns = columns(&LABELS);
+        columns.lines.iter_mut().for_each(|column| column.scale(1e-12));
+        columns.lines[0].scale(1e-24);
+        cut(&mut columns.lines);
+        let sum: f32 = columns.heights(at(5, 9)).iter().sum();
+        assert!((sum - 1.0).abs() < 1e-5, "{sum}");
+    }
+
+    #[test]
+    fn labels_of_one_place_that_cancel_out_say_nothing() {
+        let label = |n| if n < 4 { Label::Negative } else { Label::Positive };
+        let labels: [_; 8] = core::array::from_fn(|n| (sample(5, 2, label(n)), 1.0 - 1e-6));
+        let [with, without] = [&labels[..], &[]].map(|it| columns(it).share_above(at(5, 3)));
+        assert!((with - without).abs() < 0.02, "{with} for {without}");
     }
 
     #[test]
