@@ -151,7 +151,10 @@ impl<D: Dynamics, const N: usize, G: Workspace> Cfc<D, N, G> {
         let search = search.open();
         let mut followed = None;
         if self.due == Phase::Following {
+            // The rest is for the ladder.
+            let kept = search.effort.keep_back(search.effort.looks / 2);
             let findings = search.best(&problem.rule, None);
+            search.effort.give_back(kept);
             if let Some((Choice { action, target, .. }, _)) = findings.best {
                 let found = Found::of(None, (action, target));
                 return (Ok(found), Phase::Following, search.effort);

@@ -12,8 +12,8 @@
 //!    which (1) is feasible, counted in motions, 16 at most. The way never leaves the reach of uncertain ground. Eight
 //!    bearings are considered: along the bisector of the slope arc both ways, across it both ways, and between.
 //! 5. *Courses*, where there is uncertain ground: once a drive to the nearest that is beyond reach, then a way drawn at
-//!    random (`wander`). A vehicle that cannot turn on the spot may also make a drive drawn at random, to try again
-//!    from elsewhere. The next plans continue the course (`course`).
+//!    random (`wander`), or a motion drawn at random, to try again from elsewhere. The next plans continue the course
+//!    (`course`).
 //! 6. Nothing: the ladder returns the reason, and the planner stops with it.
 //!
 //! If keep-outs are in the way, (2) goes round them (`detour`).
@@ -34,7 +34,7 @@
 //!   never becomes far again.
 //! - Outside the area, the measure is the distance to the middle, and then the turns. From inside, no motion leads out.
 //!
-//! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen drives to try again from
+//! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen motions to try again from
 //! elsewhere. A way drawn at random has at most six motions, and a label at its end. If errors or a lack of looks break
 //! these rules, the planner still counts turns, see [`Silence`](crate::planner::silence::Silence).
 
@@ -120,7 +120,8 @@ pub(crate) fn solve_or_recover<D: Dynamics, R: DirectionRule, G: Workspace>(
         return Ok(found);
     }
     // Few looks find a way nearly always, unless it has to go round.
-    let looks = if goes_round { ladder.half_the_looks() } else { FIRST_LOOKS };
+    let half = ladder.half_the_looks();
+    let looks = if goes_round { half } else { half.min(FIRST_LOOKS) };
     let climbed = ladder.climb(home, looks);
     let Err(why) = climbed else { return climbed };
     let open = way_to_open_ground(problem.lines, &area, pose.site);
@@ -266,8 +267,13 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
     /// Begins a course: to open ground, which lies so far off, or one that is drawn at random.
     fn begin(&mut self, open: Vector) -> Option<Found> {
         let far = self.begin_far(open);
-        let drawn = far.or_else(|| self.begin_drawn());
-        drawn.or_else(|| self.go_elsewhere())
+        far.or_else(|| {
+            // The rest is for a drive to try again from elsewhere.
+            let kept = self.search.effort.keep_back(self.search.effort.looks / 4 * 3);
+            let drawn = self.begin_drawn();
+            self.search.effort.give_back(kept);
+            drawn.or_else(|| self.go_elsewhere())
+        })
     }
 
     /// The first motion to open ground, which lies so far off, if it is beyond reach and there was no such drive.
@@ -301,13 +307,12 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         Some(Found::of(Some(recovery), *first))
     }
 
-    /// A drive drawn at random, to try again from elsewhere, for a vehicle that has to go round to turn.
+    /// A motion drawn at random, to try again from elsewhere.
     fn go_elsewhere(&mut self) -> Option<Found> {
         let tries = self.course.tries.checked_add(1).filter(|tries| *tries <= TRIES)?;
-        let Search { dynamics, pose, .. } = *self.search;
         // A vehicle that is not safe is so near the border that driving on makes it worse.
-        let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
-        let leg = if is_free { drift(&self.problem, self.search, tries)? } else { return None };
+        let is_safe = self.search.dynamics.is_safe(self.search.pose, &self.problem.area);
+        let leg = if is_safe { drift(&self.problem, self.search, tries)? } else { return None };
         self.course.tries = tries;
         Some(Found::of(Some(Recovery::Transit), leg))
     }

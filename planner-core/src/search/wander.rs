@@ -27,9 +27,6 @@ const DRAWN: [(u32, u32); 2] = [(256, 1), (4_096, MOTIONS as u32)];
 /// Motions of a way.
 const MOTIONS: usize = 1 + REST;
 
-/// Drives that are drawn, at most, to find one that stays inside.
-const DRIFTS: u32 = 64;
-
 /// A way, at whose end a label can be asked.
 type Drawn = Vec<Leg, MOTIONS, u8>;
 
@@ -55,17 +52,15 @@ pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Workspace>(
     drawn
 }
 
-/// The first of a few drives, drawn at random, that stays inside.
+/// The first motion drawn at random that stays inside. It draws on the looks that the search has left.
 pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &Search<'_, D, G>,
     number: u8,
 ) -> Option<Leg> {
     let (dynamics, from) = (search.dynamics, search.pose);
-    // The plan has used up its looks by now; these few are beyond.
-    let effort = Effort::of(3 * DRIFTS);
-    let mut it = Wander { problem, dynamics, effort, state: u64::from(number) };
-    (0..DRIFTS).find_map(|_| it.draw(from).filter(|leg| leg.1.site != from.site))
+    let mut it = Wander { problem, dynamics, effort: search.effort, state: u64::from(number) };
+    (0..search.effort.looks).find_map(|_| it.draw(from))
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Workspace> Wander<'_, '_, '_, D, R, G> {

@@ -38,12 +38,17 @@ const FALSE_ON_COARSE: usize = 40;
 
 #[test]
 fn random_missions_keep_every_invariant() {
-    let policies = [Policy::Joint, Policy::MixtureOfStart, Policy::MixtureOfOwn];
-    let draw = |number| {
-        let policy = policies[number as usize % 3];
-        (Mission { policy, ..draw(seed(SEED), number) }, None)
-    };
-    check(draw, [100, 20_000], FALSE_REASONS);
+    check(|number| drawn(seed(SEED), number), [100, 20_000], FALSE_REASONS);
+}
+
+/// No looks were left for a way drawn at random, or a unicycle tried none from elsewhere.
+#[test]
+fn ways_that_are_hard_to_find_are_found() {
+    for number in [166, 484, 708, 716, 717, 834, 899] {
+        let (mission, _) = drawn(SEED, number);
+        let Flight { findings, .. } = fly(&mission, mission.vehicle, MOST_ASKED);
+        assert!(findings.is_empty(), "{number}: {findings:?}");
+    }
 }
 
 /// Along fronts of every kind, also where there is none. A sixth of the vehicles can drive anywhere.
@@ -81,6 +86,13 @@ fn vehicles_that_cannot_turn_on_the_spot_keep_every_invariant() {
 #[test]
 fn missions_on_coarse_grids_keep_every_invariant() {
     check(|number| draw_coarse(seed(SEED), number), [150, 10_000], FALSE_ON_COARSE);
+}
+
+/// A mission of the first kind.
+fn drawn(seed: u64, number: u64) -> (Mission, Option<Holonomic>) {
+    let policies = [Policy::Joint, Policy::MixtureOfStart, Policy::MixtureOfOwn];
+    let policy = policies[number as usize % 3];
+    (Mission { policy, ..draw(seed, number) }, None)
 }
 
 /// Every sixth mission has a vehicle that drives anywhere, as far as the one that was drawn.
