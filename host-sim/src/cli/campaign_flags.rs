@@ -117,7 +117,7 @@ pub(crate) struct CampaignFlags {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
     /// Planners are given no points: they first seek the line
-    #[arg(long, conflicts_with = "trusted_radius")]
+    #[arg(long, conflicts_with_all = ["trusted_radius", "fields_csv"])]
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_nothing: bool,
     /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: none; with

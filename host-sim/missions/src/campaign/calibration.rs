@@ -357,8 +357,9 @@ impl Sums {
     fn row(&self, labels: u32, limit: f64, sorted: &mut Sorted) -> Result<Row> {
         let mean = |sum: f64| sum / self.missions as f64;
         let (bits, expected_bits) = (mean(self.bits), mean(self.expected_bits));
-        // A share of zero is undefined.
-        let share = |bits: f64| (limit > 0.0).then(|| bits / f64::from(labels) / limit);
+        // A share of zero is undefined. By chance few labels can tell more than labels carry on average.
+        let share =
+            |bits: f64| (limit > 0.0).then(|| (bits / f64::from(labels) / limit).clamp(0.0, 1.0));
         Ok(Row {
             labels,
             missions: self.missions,

@@ -1,6 +1,6 @@
 //! A planner that moves at random: a baseline that any planner has to beat.
 
-use planner_core::dynamics::{Action, Dynamics};
+use planner_core::dynamics::{Action, Dynamics, Side};
 use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::{
@@ -11,8 +11,12 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::mission::baseline::{motion, take_in};
 
-/// Takes each action that stays in the area with equal probability. If an error has brought it outside, it also takes
-/// actions that lead no further from the area's middle. It reads no label until it is inside.
+/// Actions that are drawn to find a drive.
+const DRAWN: u32 = 1_000;
+
+/// Takes each drive that stays in the area with equal probability. If an error has brought it outside, it also takes
+/// drives that lead no further from the area's middle. It reads no label until it is inside. Where it finds no drive, it
+/// turns to the left.
 pub struct RandomWalk<D, B> {
     /// The action set.
     pub dynamics: D,
@@ -36,21 +40,26 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
             let way = self.area.middle() - site;
             way.dot(way)
         };
-        loop {
+        let drive = (0..DRAWN).find_map(|_| {
             let last = self.dynamics.grid().actions() - 1;
             let action = Action(self.rng.random_range(0..=last as u32));
             let target = self.dynamics.target(pose, action).filter(|target| {
                 let comes_back = is_outside && to_middle(target.site) <= to_middle(pose.site);
-                comes_back && self.dynamics.stays_inside(pose, *target, &self.area)
+                let stays = comes_back && self.dynamics.stays_inside(pose, *target, &self.area)
                     || self.area.contains(target.site)
-                        && self.dynamics.keeps_inside(pose, *target, &self.area, 0)
+                        && self.dynamics.keeps_inside(pose, *target, &self.area, 0);
+                stays && target.site != pose.site
             });
-            if let Some(target) = target {
-                let wants_label = self.area.contains(target.site);
-                let motion = motion(&self.dynamics, pose, action, target);
-                return Plan::Move(Motion { wants_label, ..motion });
-            }
-        }
+            target.map(|target| (action, target))
+        });
+        let Some((action, target)) =
+            drive.or_else(|| self.dynamics.turn_in_place(pose, Side::Left))
+        else {
+            return Plan::Stop(StopReason::Cornered);
+        };
+        let wants_label = drive.is_some() && self.area.contains(target.site);
+        let motion = motion(&self.dynamics, pose, action, target);
+        Plan::Move(Motion { wants_label, ..motion })
     }
 
     fn observe_within(

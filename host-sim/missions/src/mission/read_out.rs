@@ -53,6 +53,13 @@ pub struct Expectation {
     pub bits: f64,
 }
 
+impl Expectation {
+    /// No label tells less than nothing on average: what is below that is rounded.
+    fn of(chance: f64, bits: f64) -> Self {
+        Self { chance, bits: if bits > 0.0 { bits } else { 0.0 } }
+    }
+}
+
 /// A planner whose belief can be read out.
 pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
 
@@ -158,7 +165,7 @@ impl ReadOut for Curve {
 
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
-        Expectation { chance, bits: limit(self.reliability().into()) - limit(chance) }
+        Expectation::of(chance, limit(self.reliability().into()) - limit(chance))
     }
 
     /// Never: a front goes on.
@@ -195,7 +202,7 @@ impl ReadOut for Lines {
         // A true label says which of two parts of the lines is left, and carries the entropy of that division.
         let is_exact = self.tolerance() == Tolerance::NONE;
         let bits = if is_exact { 1.0 - limit(chance) } else { mean_told(self, site, chance) };
-        Expectation { chance, bits }
+        Expectation::of(chance, bits)
     }
 
     fn reaches(&self, goal: Goal, area: Area) -> bool {
@@ -228,7 +235,7 @@ impl<const L: usize> ReadOut for Tracker<16, 16, L> {
 
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
-        Expectation { chance, bits: limit(self.reliability().into()) - limit(chance) }
+        Expectation::of(chance, limit(self.reliability().into()) - limit(chance))
     }
 
     /// Never: a front goes on.
@@ -298,7 +305,7 @@ impl ReadOut for Table {
         } else {
             mean_told(self, site, chance)
         };
-        Expectation { chance, bits }
+        Expectation::of(chance, bits)
     }
 
     fn reaches(&self, goal: Goal, area: Area) -> bool {
