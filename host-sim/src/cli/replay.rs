@@ -131,6 +131,7 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
         crs: args.crs.clone(),
         threshold: args.threshold,
         strict: args.strict,
+        keeps: args.geojson.is_some(),
     };
     let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
     let wants = outputs.each_ref().map(Option::is_some);

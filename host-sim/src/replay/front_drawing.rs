@@ -71,7 +71,12 @@ impl FrontMap {
     pub fn geojson(&self) -> Result<String> {
         let file = &self.file;
         file.area_on_globe()?;
-        let number = |_, number: usize, told: &mut Value| told[self.number()] = number.into();
+        let number = |_, number: usize, told: &mut Value| {
+            told[self.number()] = number.into();
+            if let Some(time) = file.time(number) {
+                told["time"] = time;
+            }
+        };
         let mut features =
             features(&self.pieces, &Ribbon::from(&self.pieces), &file.frame, &number)?;
         for (index, sample) in file.samples.iter().enumerate() {

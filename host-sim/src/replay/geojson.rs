@@ -77,18 +77,17 @@ impl SampleFile {
         Ok(area)
     }
 
-    /// A sample as a point.
+    /// A sample as a point, with what else its row says.
     pub(crate) fn point(
         &self,
         index: usize,
         sample: &Sample,
         disagrees: Option<bool>,
     ) -> Result<Feature> {
-        let mut told = json!({
-            "kind": "sample",
-            "label": sample.label.sign(),
-            "line": self.line(index),
-        });
+        let mut told = Value::Object(self.told(index));
+        told["kind"] = "sample".into();
+        told["label"] = sample.label.sign().into();
+        told["line"] = self.line(index).into();
         if let Some(disagrees) = disagrees {
             told["disagrees"] = disagrees.into();
         }

@@ -97,6 +97,9 @@ fn read(
     let Some(positions) = points.iter().map(position).collect() else {
         return Ok(Row::Gap("found a point with less than two coordinates".to_owned()));
     };
+    if reading.layout.keeps {
+        reading.told = feature.properties.unwrap_or_default();
+    }
     reading.samples(positions, &text, number)
 }
 

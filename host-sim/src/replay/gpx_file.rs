@@ -50,7 +50,7 @@ fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
 fn read(reading: &mut Reading, label: &mut LabelName, point: Node, line: usize) -> Result<Row> {
     let wanted = label.wanted;
     let told = text(point, wanted);
-    label.see(line, told.is_some(), || elements(point));
+    label.see(line, told.is_some(), || elements(point).map(|(name, _)| name).collect());
     let mut position = [0.0; 2];
     let mut lacks = None;
     for (value, attribute) in position.iter_mut().zip(["lat", "lon"]) {
@@ -68,10 +68,11 @@ fn read(reading: &mut Reading, label: &mut LabelName, point: Node, line: usize) 
     if is_missing(told) {
         lacks = Some(format!("label: found {told:?} in {wanted}"));
     }
-    match lacks {
-        Some(lacks) => Ok(Row::Gap(lacks)),
-        None => reading.samples(vec![position], told, line),
+    if let Some(lacks) = lacks {
+        return Ok(Row::Gap(lacks));
     }
+    reading.keep(elements(point));
+    reading.samples(vec![position], told, line)
 }
 
 /// The text of the element called `wanted`: a child, or else one further below, as in extensions.
@@ -83,9 +84,9 @@ fn text<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
     found.map(|node| node.text().unwrap_or_default().trim())
 }
 
-/// The names of the elements below a point that have a text.
-fn elements(point: Node) -> Vec<String> {
+/// The elements below a point that have a text: their names and texts.
+fn elements(point: Node<'_, '_>) -> impl Iterator<Item = (String, String)> {
     let below = point.descendants().skip(1).filter(Node::is_element);
-    let texts = below.filter(|node| node.text().is_some_and(|text| !text.trim().is_empty()));
-    texts.map(|node| node.tag_name().name().to_owned()).collect()
+    let texts = below.map(|it| (it.tag_name().name(), it.text().unwrap_or_default().trim()));
+    texts.filter(|(_, text)| !text.is_empty()).map(|(name, text)| (name.into(), text.into()))
 }

@@ -2,12 +2,13 @@
 
 use anyhow::{Context as _, Result, anyhow};
 use planner_core::Label;
+use serde_json::Value;
 
 use crate::replay::degrees::degrees;
 use crate::replay::delimiter::Delimiter;
 use crate::replay::label_words::LabelWords;
 use crate::replay::numbers::Numbers;
-use crate::replay::rows::{Layout, Rows};
+use crate::replay::rows::{Layout, Rows, Told};
 
 /// A row.
 pub(crate) enum Row {
@@ -22,6 +23,8 @@ pub(crate) struct Reading<'a> {
     pub(crate) name: &'a str,
     pub(crate) layout: &'a Layout,
     pub(crate) rows: Rows,
+    /// What else the present row says.
+    pub(crate) told: Told,
     numbers: Numbers,
     words: LabelWords,
 }
@@ -42,7 +45,8 @@ impl<'a> Reading<'a> {
         loop {
             let numbers = Numbers::of(delimiter, settled);
             let words = LabelWords::of(layout.threshold);
-            let mut reading = Self { name, layout, rows: Rows::default(), numbers, words };
+            let mut reading =
+                Self { name, layout, rows: Rows::default(), told: Told::new(), numbers, words };
             pass(&mut reading)?;
             let Self { mut rows, numbers, words, .. } = reading;
             let unit = rows.unit;
@@ -68,17 +72,29 @@ impl<'a> Reading<'a> {
         number: usize,
         read: impl FnOnce(&mut Self) -> Result<Row>,
     ) -> Result<()> {
+        self.told.clear();
         let taken = read(self).and_then(|row| match row {
             Row::Samples(positions, label, value) => {
                 for position in positions {
                     self.rows.push(position, label, number);
                     self.rows.values.extend(value);
+                    self.rows.told.extend(self.layout.keeps.then(|| self.told.clone()));
                 }
                 Ok(())
             }
             Row::Gap(lacks) => self.rows.skip(self.layout, number, lacks),
         });
         taken.map_err(|error| anyhow!("{}: {error}", self.rows.unit.place(self.name, number)))
+    }
+
+    /// Keeps what else the row says, if that is wanted: names and texts, which may be numbers.
+    pub(crate) fn keep(&mut self, told: impl Iterator<Item = (String, String)>) {
+        if self.layout.keeps {
+            let value = |text: String| {
+                serde_json::from_str(&text).map_or_else(|_| text.into(), Value::Number)
+            };
+            self.told.extend(told.map(|(name, text)| (name, value(text))));
+        }
     }
 
     /// The number in a field of this name.

@@ -2,6 +2,7 @@
 
 use anyhow::{Result, bail};
 use planner_core::Label;
+use serde_json::{Map, Value};
 
 use crate::mission::results::{Name, Start, StepResult};
 use crate::replay::columns::Columns;
@@ -23,6 +24,8 @@ pub struct Layout {
     pub threshold: Option<f64>,
     /// A row without a value is an error.
     pub strict: bool,
+    /// What else the rows say is kept.
+    pub keeps: bool,
 }
 
 /// What the rows of a file are called, and what numbers them from 1.
@@ -61,6 +64,9 @@ impl Unit {
     }
 }
 
+/// What a row says beside its position, by the titles of its columns or the names of its properties.
+pub(crate) type Told = Map<String, Value>;
+
 /// Rows without a value, which are no samples.
 #[derive(Debug, Default)]
 pub(crate) struct Skipped {
@@ -83,6 +89,8 @@ pub(crate) struct Rows {
     pub(crate) backwards: Option<(usize, usize)>,
     /// The line of the file on which each begins, or the number of its feature.
     pub(crate) lines: Vec<usize>,
+    /// What else each row says, or none.
+    pub(crate) told: Vec<Told>,
     pub(crate) unit: Unit,
     pub(crate) skipped: Skipped,
     /// The rows whose labels are certain, whatever `p` is.
@@ -120,7 +128,7 @@ impl Rows {
 
     /// Takes measured rows away, each if it is said of it.
     pub(crate) fn leave_out(&mut self, rows: &[bool]) {
-        fn kept<T: Copy>(of: &mut Vec<T>, rows: &[bool]) {
+        fn kept<T>(of: &mut Vec<T>, rows: &[bool]) {
             let mut rows = rows.iter();
             of.retain(|_| rows.next() != Some(&true));
         }
@@ -128,6 +136,7 @@ impl Rows {
         kept(&mut self.labels, rows);
         kept(&mut self.values, rows);
         kept(&mut self.lines, rows);
+        kept(&mut self.told, rows);
     }
 
     /// Leaves a row out, which lacks something.

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
 use planner_core::{Label, Sample};
+use serde_json::Value;
 
 use crate::output::{kind, plain};
 use crate::replay::frame::{Frame, check_degrees};
-use crate::replay::rows::{Layout, Rows, Skipped, Traced, Unit};
+use crate::replay::rows::{Layout, Rows, Skipped, Told, Traced, Unit};
 use crate::replay::{encoding, geojson_file, gpx_file, swapped, table_file, trace_file};
 
 /// Samples in the order in which they were recorded.
@@ -34,6 +35,8 @@ pub(crate) struct SampleFile {
     pub(crate) mission: Option<Box<Traced>>,
     /// The line of the file on which each begins, or the number of its feature.
     lines: Vec<usize>,
+    /// What else each row says, or none.
+    told: Vec<Told>,
 }
 
 /// Why a file is no table. A scenario may have been meant for another command.
@@ -117,14 +120,39 @@ impl SampleFile {
         };
         let both = rows.positions.iter().zip(&rows.labels);
         let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        let Rows { certain, p, lines, skipped, odd, backwards, mission, .. } = rows;
+        let Rows { certain, p, lines, skipped, odd, backwards, mission, told, .. } = rows;
         let name = name.to_owned();
-        Ok(Self { name, samples, frame, certain, p, skipped, odd, backwards, unit, mission, lines })
+        Ok(Self {
+            name,
+            samples,
+            frame,
+            certain,
+            p,
+            skipped,
+            odd,
+            backwards,
+            unit,
+            mission,
+            lines,
+            told,
+        })
     }
 
     /// The line on which a sample begins, or the number of its feature.
     pub(crate) fn line(&self, index: usize) -> usize {
         self.lines[index]
+    }
+
+    /// What else its row says.
+    pub(crate) fn told(&self, index: usize) -> Told {
+        self.told.get(index).cloned().unwrap_or_default()
+    }
+
+    /// The time of the row on a line, or of the feature with that number.
+    pub(crate) fn time(&self, line: usize) -> Option<Value> {
+        let index = self.lines.binary_search(&line).ok()?;
+        let is_time = |name: &str| table_file::TIMES.iter().any(|it| it.eq_ignore_ascii_case(name));
+        self.told.get(index)?.iter().find(|(name, _)| is_time(name)).map(|it| it.1.clone())
     }
 
     /// The file and the line of a sample.

@@ -73,7 +73,8 @@ fn heading(text: &[u8], columns: &Columns, delimiter: Option<Delimiter>) -> (Del
 }
 
 /// Titles of a column of times, in small letters.
-const TIMES: [&str; 7] = ["time", "timestamp", "datetime", "date_time", "utc", "time_utc", "t"];
+pub(crate) const TIMES: [&str; 7] =
+    ["time", "timestamp", "datetime", "date_time", "utc", "time_utc", "t"];
 
 /// Times that a column has, as far as they can be compared: numbers, or words that begin with a year.
 #[derive(Debug, Default)]
@@ -175,7 +176,17 @@ fn pass(
             let (count, first) = reading.rows.backwards.unwrap_or((0, number));
             reading.rows.backwards = Some((count + 1, first));
         }
-        reading.row(number, |reading| read(reading, &row, places, delimiter, number))?;
+        reading.row(number, |reading| {
+            if let Some(titles) = &titles {
+                let all = fields(titles, delimiter).map(String::from_utf8_lossy);
+                let beside = all.enumerate().filter(|it| !places.position.contains(&it.0));
+                reading.keep(beside.map(|(column, title)| {
+                    let text = field(&row, delimiter, column);
+                    (title.trim().to_owned(), text.trim().to_owned())
+                }));
+            }
+            read(reading, &row, places, delimiter, number)
+        })?;
         line = next(&mut row)?;
     }
     Ok(())
