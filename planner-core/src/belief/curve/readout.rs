@@ -6,7 +6,7 @@ use crate::belief::curve::follower::{Curve, DRIFTS, MapPlace, Passed};
 use crate::belief::estimate::Estimates;
 use crate::belief::front::{Beside, NINETY, Unit, Waist, angle, metres};
 use crate::belief::goal::{Criterion, Goal};
-use crate::belief::sample::Reading;
+use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief, ObservationError};
 use crate::geometry::approximate::sqrt;
@@ -171,6 +171,12 @@ impl Belief for Curve {
         let (above, errs) = (f64::from(self.share_above(site)), f64::from(self.error()));
         (1.0 - errs) * above + errs * (1.0 - above)
     }
+
+    /// For evidence it is more by the misfit.
+    fn chance_of(&self, site: Site, label: Label) -> f32 {
+        let above = self.chance(site) as f32;
+        MISFIT + if label == Label::Positive { above } else { 1.0 - above }
+    }
 }
 
 #[cfg(test)]
@@ -178,7 +184,7 @@ mod tests {
     use super::*;
     use crate::belief::front::Front;
     use crate::belief::noise::Noise;
-    use crate::belief::sample::{Label, Sample};
+    use crate::belief::sample::Sample;
     use crate::draws::Draws;
 
     #[test]

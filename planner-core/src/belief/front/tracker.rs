@@ -191,14 +191,17 @@ impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
         self.is_open() && self.share_nowhere() > ABSENT
     }
 
+    fn misfit(&self) -> f32 {
+        if self.grid.lay.bend > 0.0 { MISFIT } else { 0.0 }
+    }
+
     fn take(&mut self, site: Site, label: Label, tolerance: Tolerance) {
         let p = self.counted();
         let may_be_nowhere = self.may_be_nowhere();
         let chance = self.weigh(site, label, p, Self::blur(tolerance));
         // Labels that are all the same do not tell a sensor that is stuck from an area without a front.
         if !may_be_nowhere {
-            let misfit = if self.grid.lay.bend > 0.0 { MISFIT } else { 0.0 };
-            self.evidence.observe(label, chance + misfit);
+            self.evidence.observe(label, chance + self.misfit());
         }
         if let Some(learnt) = &mut self.learnt {
             // The share of the curves that agree makes the label as likely as it was.
@@ -330,6 +333,12 @@ impl<const K: usize, const M: usize, const L: usize> Belief for Tracker<K, M, L>
     fn chance(&self, site: Site) -> f64 {
         let (above, p) = (f64::from(self.share_above(site)), f64::from(self.counted()));
         p * above + (1.0 - p) * (1.0 - above)
+    }
+
+    /// For evidence it is more by the misfit.
+    fn chance_of(&self, site: Site, label: Label) -> f32 {
+        let above = self.chance(site) as f32;
+        self.misfit() + if label == Label::Positive { above } else { 1.0 - above }
     }
 }
 
