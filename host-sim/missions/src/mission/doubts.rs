@@ -4,17 +4,21 @@ use anyhow::Result;
 use nalgebra::{Point2, center};
 use planner_core::dynamics::Dynamics as _;
 use planner_core::link::message::MissionArea;
-use planner_core::{AnyVehicle, Workspace as _};
+use planner_core::{AnyVehicle, Line, Workspace as _};
 
 use crate::mission::allowance::tidy;
 use crate::mission::strict::wrong;
 use crate::mission::wording::in_radians;
+use crate::world::polygon::Polygon;
 
 /// An area whose middle is further off than this many of its sides may be a map's, in degrees.
 const FAR: f64 = 10.0;
 
 /// Degrees that a mission covers, at most: a lattice is 16 km wide.
 const MOST_DEGREES: f64 = 10.0;
+
+/// A line that cuts off less than this share of an area is hardly meant.
+const LITTLE: f64 = 0.1;
 
 /// The shortest motion of a vehicle and its longest, metres.
 fn motions(vehicle: &AnyVehicle) -> [f64; 2] {
@@ -50,6 +54,20 @@ pub(crate) fn of_angles<const N: usize>(angles: [(&str, f64, f64); N]) -> Vec<St
     large
         .map(|(key, it, _)| format!("{key}: {it} rad; are these degrees? {}", in_radians(it)))
         .collect()
+}
+
+/// A slope of a line that cuts off little of an area, where one of so many degrees cuts off much.
+pub(crate) fn of_slope(area: &Polygon, [slope, intercept]: [f64; 2]) -> Option<String> {
+    let cut = |slope: f64| {
+        let above = area.clip(&Line::from_slope(slope, intercept)?, 1.0).area() / area.area();
+        Some(above.min(1.0 - above))
+    };
+    let radians = slope.to_radians();
+    let is_doubtful = slope.abs() <= 90.0 && cut(slope)? < LITTLE && cut(radians.tan())? > LITTLE;
+    let meant = tidy(radians.tan());
+    is_doubtful.then(|| {
+        format!("truth.slope: {slope}; are these degrees? {slope} deg are a slope of {meant}")
+    })
 }
 
 /// Given points that lie together more closely than a motion reaches.

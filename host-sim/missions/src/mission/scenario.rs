@@ -310,12 +310,13 @@ impl File {
         let turn_step = self.vehicle.as_ref().and_then(|it| it.0.turn_step());
         let mut all = doubts::of_angles([
             ("start.heading", start.heading, std::f64::consts::TAU),
-            ("errors.turn", errors.turn, 0.5),
-            ("errors.heading", errors.heading, 0.5),
+            ("errors.turn", errors.turn, 0.2),
+            ("errors.heading", errors.heading, 0.2),
             ("vehicle.turn_step", turn_step.unwrap_or_default(), 0.5),
         ]);
         let points = self.oracle.iter().map(|it| it.0.at()).collect::<Vec<_>>();
         all.extend(doubts::of_points(&points, vehicle));
+        all.extend(self.doubted_slope(area));
         all.extend(doubts::of_area(area, vehicle)?);
         let front = self.front.as_ref().map(|it| it.0).unwrap_or_default();
         if front.radius.is_some_and(f64::is_finite) && front.watch.is_none() {
@@ -330,6 +331,11 @@ impl File {
             ));
         }
         Ok(all)
+    }
+
+    fn doubted_slope(&self, area: &MissionArea) -> Option<String> {
+        let base = self.truth.as_ref().and_then(|it| it.0.base());
+        doubts::of_slope(&(*area).into(), base?)
     }
 
     /// Whether an audit comes before a goal's promise.
@@ -427,7 +433,10 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     check_steps(steps_name, steps, given_count, room)?;
     let world = file.truth.as_ref().map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, folder))?;
     let given = if algorithm.seeks_line() { given } else { given_of_front };
-    let given = given(&file.oracle, &bounds, &area, &world)?;
+    let given = given(&file.oracle, &bounds, &area, &world).map_err(|error| {
+        let doubt = file.doubted_slope(&area).map(|doubt| format!(" ({doubt})"));
+        anyhow!("{error}{}", doubt.unwrap_or_default())
+    })?;
     if algorithm == Algorithm::Chords {
         chords::ends(&given.samples()[..file.oracle.len()])?;
     }

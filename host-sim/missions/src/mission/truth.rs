@@ -56,6 +56,11 @@ pub(crate) struct TruthTable {
 }
 
 impl TruthTable {
+    /// Its slope and its intercept.
+    pub(crate) fn base(&self) -> Option<[f64; 2]> {
+        Some([self.slope?, self.intercept?])
+    }
+
     /// The world that it describes. A raster is sought in a folder.
     ///
     /// # Errors
