@@ -12,7 +12,7 @@
 //!    which (1) is feasible, counted in motions, 16 at most. The way never leaves the reach of uncertain ground. Eight
 //!    bearings are considered: along the bisector of the slope arc both ways, across it both ways, and between.
 //! 5. *Courses*, where there is uncertain ground: once a drive to the nearest that is beyond reach, then a way drawn at
-//!    random (`wander`), or a motion drawn at random, to try again from elsewhere. The next plans continue the course
+//!    random (`wander`), or a drive drawn at random, to try again from elsewhere. The next plans continue the course
 //!    (`course`).
 //! 6. Nothing: the ladder returns the reason, and the planner stops with it.
 //!
@@ -34,7 +34,7 @@
 //!   never becomes far again.
 //! - Outside the area, the measure is the distance to the middle, and then the turns. From inside, no motion leads out.
 //!
-//! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen motions to try again from
+//! **Courses end**: of rung 5 there is at most one drive to ground beyond reach, and sixteen drives to try again from
 //! elsewhere. A way drawn at random has at most six motions, and a label at its end. If errors or a lack of looks break
 //! these rules, the planner still counts turns, see [`Silence`](crate::planner::silence::Silence).
 
@@ -307,7 +307,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         Some(Found::of(Some(recovery), *first))
     }
 
-    /// A motion drawn at random, to try again from elsewhere.
+    /// A drive drawn at random, to try again from elsewhere.
     fn go_elsewhere(&mut self) -> Option<Found> {
         let tries = self.course.tries.checked_add(1).filter(|tries| *tries <= TRIES)?;
         // A vehicle that is not safe is so near the border that driving on makes it worse.

@@ -52,7 +52,7 @@ pub(crate) fn wander<D: Dynamics, R: DirectionRule, G: Workspace>(
     drawn
 }
 
-/// The first motion drawn at random that stays inside. It draws on the looks that the search has left.
+/// The first drive drawn at random that stays inside. It draws on the looks that the search has left.
 pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Workspace>(
     problem: &Problem<'_, R, G>,
     search: &Search<'_, D, G>,
@@ -60,7 +60,7 @@ pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Workspace>(
 ) -> Option<Leg> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Wander { problem, dynamics, effort: search.effort, state: u64::from(number) };
-    (0..search.effort.looks).find_map(|_| it.draw(from))
+    (0..search.effort.looks).find_map(|_| it.draw(from).filter(|leg| leg.1.site != from.site))
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Workspace> Wander<'_, '_, '_, D, R, G> {
