@@ -15,6 +15,7 @@
 use crate::belief::curve::Curve;
 use crate::belief::front::limited;
 use crate::belief::predictions::entropy;
+use crate::belief::sample::Label;
 use crate::geometry::approximate::{cross, distance, heading_of, sqrt};
 use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::workspace::Workspace;
@@ -134,9 +135,13 @@ fn way_to(from: Pose, place: Site, radius: f32) -> f32 {
     long + radius * if is_within { TURN } else { off }
 }
 
-/// Whether a label is certain where this share of the curves lies above.
-pub(crate) fn is_sure(share: f32) -> bool {
-    share < NEARLY || share > 1.0 - NEARLY
+/// The label that is certain where this share of the curves lies above, if any is.
+pub(crate) fn sure_label(share: f32) -> Option<Label> {
+    match share {
+        _ if share > 1.0 - NEARLY => Some(Label::Positive),
+        _ if share < NEARLY => Some(Label::Negative),
+        _ => None,
+    }
 }
 
 /// A place ahead whose label is certain, on one side of the front: what tells a wrong model. `None` where none lies so near

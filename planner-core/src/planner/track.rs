@@ -34,7 +34,7 @@ use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::aim::{Aim, Onward};
-use crate::planner::along::{best_place, certain_place, is_sure, towards};
+use crate::planner::along::{best_place, certain_place, sure_label, towards};
 use crate::planner::front_state::FrontState;
 use crate::planner::hunt::Hunt;
 use crate::planner::lap::Lap;
@@ -56,10 +56,12 @@ const ELSEWHERE: f32 = 0.97;
 const DIRECTIONS: usize = 16;
 const OFFSETS: usize = 16;
 
-/// After so many labels one is read on certain ground, if that is near; after so many it may be far.
-const NEARBY: u8 = 10;
-const FAR: u8 = 17;
+/// After so many labels one is read on certain ground, if that is near; after so many it may be far. After one that
+/// surprises, the next comes soon.
+const NEARBY: u8 = 14;
+const FAR: u8 = 22;
 const AUDIT: u8 = FAR + 3;
+const SOON: u8 = 2;
 
 /// Near and far are so many reaches beside the front.
 const BESIDE: f32 = 0.5;
@@ -423,11 +425,14 @@ impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
         if self.lap.back().is_none() {
             self.curve.moved(pose.site, 1.0);
             if let Some(reading) = reading {
-                let is_sure = is_sure(self.curve.share_above(pose.site));
+                let expected = sure_label(self.curve.share_above(pose.site));
                 self.curve.observe_within(pose.site, reading, tolerance)?;
-                self.turn = match self.turn {
-                    it if is_sure && it % AUDIT >= NEARBY => (it / AUDIT + 1) % 2 * AUDIT,
-                    it => (it + 1) % (2 * AUDIT),
+                self.turn = match expected {
+                    Some(label) if self.turn % AUDIT >= NEARBY => {
+                        let next = (self.turn / AUDIT + 1) % 2 * AUDIT;
+                        if reading == label.into() { next } else { next + FAR - SOON }
+                    }
+                    _ => (self.turn + 1) % (2 * AUDIT),
                 };
             }
             self.judge(pose);

@@ -201,7 +201,7 @@ fn cars_go_round_wide_bends() {
 #[test]
 fn a_sensor_that_fails_while_a_front_is_followed_raises_an_alarm() {
     for (p, fault, least) in
-        [(1.0, 0.5, 80.0), (0.9, 0.5, 50.0), (1.0, 1.0, 95.0), (0.9, 1.0, 40.0)]
+        [(1.0, 0.5, 80.0), (0.9, 0.5, 25.0), (1.0, 1.0, 95.0), (0.9, 1.0, 40.0)]
     {
         let noticed = ensemble::fly(cases(20, 100), |number| {
             let mut rng = ensemble::rng(49, number);

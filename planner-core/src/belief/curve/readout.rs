@@ -15,7 +15,7 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
 use crate::geometry::local_line::LocalLine;
 
-/// For evidence a label is likelier by this: a few Gaussians stand for all curves.
+/// For evidence a label is another one than it seems with this chance: a few Gaussians stand for all curves.
 const MISFIT: f32 = 0.02;
 
 /// A front that a line crosses at a smaller angle than this, as a cosine, is taken to cross it at this.
@@ -136,7 +136,7 @@ impl Belief for Curve {
         // A reading on the boundary agrees with both sides.
         let Reading::Side(label) = reading else { return Ok(()) };
         let chance = self.hear(site, label, self.blur(tolerance));
-        self.evidence.observe(label, chance + MISFIT);
+        self.evidence.observe(label, for_evidence(chance));
         let (last, run) = self.run;
         self.run = (Some(label), if last == Some(label) { run.saturating_add(1) } else { 1 });
         if self.evidence.alarm().is_some_and(|it| it.is_grave()) {
@@ -172,11 +172,15 @@ impl Belief for Curve {
         (1.0 - errs) * above + errs * (1.0 - above)
     }
 
-    /// For evidence it is more by the misfit.
     fn chance_of(&self, site: Site, label: Label) -> f32 {
         let above = self.chance(site) as f32;
-        MISFIT + if label == Label::Positive { above } else { 1.0 - above }
+        for_evidence(if label == Label::Positive { above } else { 1.0 - above })
     }
+}
+
+/// The chance of a label as it counts for evidence.
+fn for_evidence(chance: f32) -> f32 {
+    chance + MISFIT * (1.0 - 2.0 * chance)
 }
 
 #[cfg(test)]
