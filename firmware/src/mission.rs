@@ -29,7 +29,7 @@ impl Board {
     /// Flies missions of any vehicle in any area.
     pub(crate) fn run(&mut self) -> ! {
         type OfLines = AllLabels<TRUE_SAMPLES, DOUBTFUL_SAMPLES, HYPOTHESES, AnySight>;
-        type Planners = Tracks<Guards<16, 16, 3, OfLines>>;
+        type Planners = Tracks<Guards<OfLines>>;
         loop {
             // How it ended is in the log.
             let _ = self.station.mission::<Planners, AnyVehicle, MissionArea>(&mut self.deck);

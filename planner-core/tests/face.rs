@@ -7,9 +7,9 @@ use planner_core::error::{
 };
 use planner_core::{
     AnyReliability, AnyVehicle, Area, Boat, Car, CarShape, CellPosterior, CellView, Certainty, Cfc,
-    Far, Front, FrontStretch, Goal, Guard, Heading, Holonomic, Hull, KeepOut, Label, Lookahead,
-    Motion, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose, Prior, Recovery, Reliability,
-    Sample, Scc, Seek, Site, SlopeArc, Tolerance, Track, Tracker, Unicycle, UnicycleShape,
+    Far, Front, FrontStretch, Goal, Guard, Heading, Holonomic, Hull, KeepOut, Label, Lines,
+    Lookahead, Motion, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose, Prior, Recovery,
+    Reliability, Sample, Scc, Seek, Site, SlopeArc, Tolerance, Track, Unicycle, UnicycleShape,
     UnknownReliability, VehicleShape, VersionSpace, Workspace,
 };
 
@@ -79,10 +79,10 @@ fn areas_beliefs_and_planners_with_any_vehicle() -> Result {
     flies(Lookahead::new(lake()?, Unicycle::paper(), doubtful)?)?;
     let (area, front) = (Area::metres([0.0; 2], [20.0; 2])?, Front::bending(10.0)?);
     let known: Noise<AnyReliability> = Noise::from(noise);
-    flies(Seek::new(area, Unicycle::default(), Tracker::<16, 16, 1>::new(area, front, known))?)?;
+    flies(Seek::new(area, Unicycle::default(), Lines::<16, 16>::new(area, known))?)?;
     flies(Track::new(area, Unicycle::default(), front, known)?)?;
-    let tracker = Tracker::<16, 16, 3>::new(area, front, known);
-    flies(Guard::new(area, Unicycle::default(), tracker, FrontStretch::metres(10.0)?)?)?;
+    let told = (front, FrontStretch::metres(10.0)?);
+    flies(Guard::watching(area, Unicycle::default(), told, known)?)?;
     Ok(())
 }
 

@@ -107,7 +107,7 @@ impl Watch for Hears {
 /// As [`Station::fly`].
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
     type OfLines = AllLabels<68, 36, 529, AnySight>;
-    type Planners = Tracks<Guards<16, 16, 3, OfLines>>;
+    type Planners = Tracks<Guards<OfLines>>;
     chip.fly_with::<Planners, AnyVehicle, MissionArea>(setup, &mut Hears)
 }
 

@@ -55,8 +55,8 @@ pub(crate) struct ReplayArgs {
     /// Positions may be off by so many metres
     #[arg(long, value_name = "METRES", value_parser = tolerance)]
     pub(crate) tolerance: Option<f64>,
-    /// Map a front that bends and moves along the rows, as a recorded track: the radius of its tightest bend, metres
-    /// (inf: straight), and how far it may move from one row to the next, metres
+    /// Map a front that bends and moves along the rows, as a recorded track: a radius, metres, of which only inf (straight)
+    /// has an effect, and how far it may move from one row to the next, metres
     #[arg(long, value_name = "RADIUS[,SPEED]", value_parser = front)]
     pub(crate) front: Option<Front>,
     /// Write a figure here

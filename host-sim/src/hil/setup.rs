@@ -79,7 +79,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
         let most = message::MOST_GIVEN;
         anyhow!("oracle: found {} points, expected at most {most} on a board", samples.len())
     })?;
-    // A tracker stores no samples. True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
+    // A follower of fronts stores no samples. True labels leave one hypothesis. `t` labels that may be wrong leave at most `1 + t + t (t - 1) / 2`.
     // Labels of an audit take no room, and true labels no more than the planner here has. A reading on the way may take
     // as much as the label at the end.
     let room = (CAPACITY - samples.len()) as u32;

@@ -165,7 +165,7 @@ fn of_shape(file: &SampleFile, fit: &Fit) -> (String, String) {
                 with(disagreeing)
             ),
             format!(
-                "Map it with --front {}, or with a smaller radius if in doubt. For a straight line take a shorter stretch, or \
+                "Map it with --front {}. For a straight line take a shorter stretch, or \
                  a tolerance that covers the bend. The arc is {} m from its chord.",
                 rounded(radius),
                 rounded(sagitta)

@@ -1,5 +1,6 @@
 //! The front along a recorded track, as a record.
 
+use planner_core::Label;
 use serde::Serialize;
 
 use crate::mission::front::{FrontTable, VertexRecord};
@@ -19,15 +20,12 @@ pub struct FrontRecord {
     tolerance: Option<f64>,
     /// The front counts as found where its half-width is below this, metres.
     found_within: f64,
-    /// Rows that were taken in.
-    taken: usize,
-    /// They are at least so far apart, metres.
-    apart: f64,
     /// What its numbers are: `row` (the line of the file, or its feature) or `step`.
     numbers: &'static str,
     map: MapRecord,
+    /// The label of all ground, where no front was found.
     #[serde(skip_serializing_if = "Option::is_none")]
-    one_label: Option<OneLabelRecord>,
+    one_label: Option<i8>,
     /// After which the front was sought anew.
     alarms: Vec<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -35,14 +33,6 @@ pub struct FrontRecord {
     #[serde(skip_serializing_if = "Option::is_none")]
     crs: Option<String>,
     vertices: Vec<MappedRecord>,
-}
-
-/// The label of all ground.
-#[derive(Serialize)]
-struct OneLabelRecord {
-    label: i8,
-    /// That there is no front.
-    probability: f64,
 }
 
 /// A vertex.
@@ -78,13 +68,9 @@ impl FrontMap {
             p: self.p,
             tolerance: (self.tolerance > 0.0).then_some(self.tolerance),
             found_within: self.width,
-            taken: self.taken,
-            apart: self.apart,
             numbers: self.number(),
             map: self.map,
-            one_label: self
-                .one_label
-                .map(|(label, probability)| OneLabelRecord { label: label.sign(), probability }),
+            one_label: self.one_label.map(Label::sign),
             alarms: self.alarms.clone(),
             origin: frame.origin(),
             crs: frame.crs().map(ToString::to_string),

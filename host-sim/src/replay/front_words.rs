@@ -61,8 +61,7 @@ impl FrontMap {
         let unit = self.unit();
         match (self.map.state, self.map.lost) {
             (State::Lost, Some(lost)) => Some(format!(
-                "the front is lost since {unit} {}. If it bends more tightly or moves faster than --front says, name a \
-                 smaller radius or a higher speed",
+                "the front is lost since {unit} {}. If it moves faster than --front says, name a higher speed",
                 lost.step
             )),
             (State::Sought, _) => Some(
@@ -93,26 +92,15 @@ impl FrontMap {
     }
 
     fn told(&self) -> String {
-        let bends = self.front.radius().map_or("is straight".to_owned(), |radius| {
-            format!("bends with a radius of {radius} m or more")
-        });
+        let is = if self.front.radius().is_some() { "may bend" } else { "is straight" };
         let moves = match self.front.speed() {
             speed if speed > 0.0 => format!("moves by up to {speed} m a {}", self.number()),
             _ => "does not move".to_owned(),
         };
-        let (count, apart) = (self.file.samples.len(), self.apart);
-        let taken = if self.is_of_trace() || self.taken == count {
-            String::new()
-        } else {
-            let taken = self.taken;
-            format!(
-                "Of the samples {taken} were taken in: each is at least {apart:.2} m from the one before.\n"
-            )
-        };
+        let width = self.width;
         format!(
-            "Told: the front {bends}, and {moves}. It counts as found where its half-width is below {:.2} m.\n",
-            self.width
-        ) + &taken
+            "Told: the front {is}, and {moves}. It counts as found where its half-width is below {width:.2} m.\n"
+        )
     }
 
     /// Where the map ends, and how far from the end of the track: a line, if it has vertices.
@@ -127,11 +115,7 @@ impl FrontMap {
     }
 
     fn one_label_in_words(&self) -> Option<String> {
-        let (label, absent) = self.one_label?;
-        let (label, percent) = (label.sign(), 100.0 * absent);
-        Some(format!(
-            "The ground has one label, {label:+}: no front was found. With a probability of {percent:.0} % there is none \
-             around the track."
-        ))
+        let label = self.one_label?.sign();
+        Some(format!("The ground has one label, {label:+}: no front was found."))
     }
 }

@@ -1,40 +1,32 @@
 //! A recorded track: rows in their order, and what was known before the first.
 
+use std::mem;
+
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
 use planner_core::motion::unicycle::Grid;
 use planner_core::watch::Evidence;
 use planner_core::{
-    AnyReliability, AnyVehicle, Area, Belief as _, Front, Heading, Label, MapPlace, Noise,
-    Planner as _, Pose, Reading, Sample, Site, Tolerance, Track, Waist,
+    AnyReliability, AnyVehicle, Area, Curve, Front, FrontStretch, Guard, Heading, Label, Noise,
+    OneLabel, Planner as _, Pose, Reading, Sample, Site, Tolerance, Track, Trust as _, Unicycle,
 };
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::definition::FrontBelief;
-use crate::mission::read_out::FrontKnown;
 use crate::mission::results::{PTold, Start, StepResult};
 use crate::mission::vehicle::Source;
-use crate::replay::answer::Trust;
+use crate::replay::answer;
 use crate::replay::rows::Traced;
 use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
 
-/// A follower's longest motion is this share of the tightest bend's radius, and of the mean of the area's sides, at most.
-const SHORT: f64 = 0.125;
+/// The usual motion of one who crosses a front to and fro is this share of the way from one change of labels to the next.
+const SHARE: f64 = 0.5;
 
-/// A front counts as found where its half-width is below so many of these motions.
-const FOUND: f64 = 1.5;
+/// The front is crossed for sure where the logarithm of the odds of labels has changed from less than this to more.
+const SURE: f64 = 3.0;
 
-/// After an alarm it is sought within so many of them.
-const AGAIN: f64 = 6.0;
-
-/// Rows of a table are taken in where they are so many of these motions apart. A tracker is made for labels that are
-/// about one apart: of many more it learns too much, since it does not keep where in a cell they were read.
-const APART: f64 = 0.2;
-
-/// The time that passes with a row of a table is within these, in units of the tracker.
-const LEAST: f64 = 1e-3;
-const MOST: f64 = 4.0;
+/// Speeds of a follower that is led, 0 among them: only the greatest counts.
+const SPEEDS: u16 = 5;
 
 /// The greatest speed of a front, metres in a unit of time.
 const FASTEST: f64 = 1e3;
@@ -47,93 +39,86 @@ pub(crate) struct Row {
     pub(crate) heading: Heading,
     pub(crate) label: Option<Label>,
     pub(crate) passed: Vec<(Site, Reading)>,
-    /// The time since the row before, in units of the tracker: one motion of a follower takes about one.
-    pub(crate) elapsed: f32,
     /// The whole way to here, metres.
     pub(crate) driven: f64,
 }
 
 /// What takes in the rows.
 pub(crate) enum Known {
-    /// A tracker by itself, for rows that no mission has read.
-    Rows(Box<FrontBelief>),
+    /// A follower that is led, for rows that no mission has read.
+    Rows(Box<Track<AnyVehicle>>),
     /// The follower of the mission.
     Mission(Box<Track<AnyVehicle>>, Pose),
+    /// The guard of the mission.
+    Guard(Box<Guard<AnyVehicle>>, Pose),
 }
 
 impl Known {
-    /// The probability that there is no front.
-    pub(crate) fn share_nowhere(&self) -> f32 {
+    /// Takes in a row. Whether the front is sought anew.
+    pub(crate) fn take(&mut self, row: &Row) -> Result<bool> {
         match self {
-            Self::Rows(tracker) => tracker.share_nowhere(),
-            Self::Mission(follower, _) => f32::from(u8::from(follower.one_label().is_some())),
-        }
-    }
-
-    /// Takes in a row. Whether the front is sought anew, within so many metres or in an area.
-    pub(crate) fn take(&mut self, row: &Row, near: f32, area: Area) -> Result<bool> {
-        match self {
-            Self::Rows(tracker) => {
-                tracker.moved(row.site, row.elapsed);
-                match row.label {
-                    Some(label) => tracker.observe(row.site, label.into())?,
-                    None => tracker.settle(row.site),
-                }
-                Ok(tracker.seek_anew((row.site, near), area))
+            Self::Rows(follower) => {
+                let _ = follower.plan(row.pose());
+                take(follower, row)
             }
             Self::Mission(follower, pose) => {
-                let has_evidence = |it: &Track<_>| *it.belief().evidence() != Evidence::NONE;
-                let had = has_evidence(follower);
                 // What it plans may differ, if it is told something else than in the mission.
-                let _ = follower.plan(*pose);
-                for (site, reading) in &row.passed {
-                    follower.observe_on_the_way(*site, *reading)?;
-                }
-                *pose = Pose { site: row.site, heading: row.heading };
-                follower.observe(*pose, row.label.map(Into::into))?;
-                Ok(had && !has_evidence(follower))
+                let _ = follower.plan(mem::replace(pose, row.pose()));
+                take(follower, row)
+            }
+            Self::Guard(guard, pose) => {
+                let _ = guard.plan(mem::replace(pose, row.pose()));
+                take(guard, row)
             }
         }
     }
 
-    /// Where the front is known best, if its half-width is below this, metres.
-    pub(crate) fn found(&self, within: f32) -> Option<Waist> {
+    /// Whether the front is known.
+    pub(crate) fn is_found(&self) -> bool {
         match self {
-            Self::Rows(tracker) => tracker.found(within),
-            Self::Mission(follower, _) => follower.found(),
+            Self::Rows(it) | Self::Mission(it, _) => it.found().is_some(),
+            Self::Guard(it, _) => it.found().is_some(),
         }
     }
 
-    /// The places that the map has more after a row.
-    pub(crate) fn mapped(&self, within: f32) -> Vec<MapPlace> {
+    pub(crate) fn one_label(&self) -> Option<OneLabel> {
         match self {
-            Self::Rows(tracker) => FrontKnown::mapped(&**tracker, within),
-            Self::Mission(follower, _) => follower.belief().mapped().to_vec(),
+            Self::Rows(it) | Self::Mission(it, _) => it.one_label(),
+            Self::Guard(it, _) => it.one_label(),
         }
     }
 
-    /// The places that it has more at the end.
-    pub(crate) fn rest(&self) -> Vec<MapPlace> {
+    pub(crate) fn curve(&self) -> &Curve {
         match self {
-            Self::Rows(_) => Vec::new(),
-            Self::Mission(follower, _) => FrontKnown::rest(follower.belief()),
+            Self::Rows(it) | Self::Mission(it, _) => it.belief(),
+            Self::Guard(it, _) => it.belief(),
         }
+    }
+}
+
+fn take<const N: usize>(follower: &mut Track<AnyVehicle, Area, N>, row: &Row) -> Result<bool> {
+    let has_evidence = |it: &Track<_, _, N>| *it.belief().evidence() != Evidence::NONE;
+    let had = has_evidence(follower);
+    for (site, reading) in &row.passed {
+        follower.observe_on_the_way(*site, *reading)?;
+    }
+    follower.observe(row.pose(), row.label.map(Into::into))?;
+    Ok(had && !has_evidence(follower))
+}
+
+impl Row {
+    fn pose(&self) -> Pose {
+        Pose { site: self.site, heading: self.heading }
     }
 }
 
 /// A recorded track.
 pub(crate) struct RecordedTrack {
-    /// The rows that are taken in.
     pub(crate) rows: Vec<Row>,
-    /// They are at least so far apart, metres.
-    pub(crate) apart: f64,
     /// What is known of the front before the first row.
     pub(crate) known: Known,
     /// The front counts as found where its half-width is below this, metres.
     pub(crate) width: f32,
-    /// After an alarm it is sought within so many metres, and then in this area.
-    pub(crate) near: f32,
-    pub(crate) area: Area,
     /// How often labels are true.
     pub(crate) p: PTold,
     /// Whether it ends back where the front was found, after all the way round it.
@@ -146,7 +131,7 @@ impl RecordedTrack {
     ///
     /// # Errors
     /// Names the file, what was found and what was expected.
-    pub(crate) fn of(file: &SampleFile, front: Front, trust: Trust) -> Result<Self> {
+    pub(crate) fn of(file: &SampleFile, front: Front, trust: answer::Trust) -> Result<Self> {
         let told = file.mission.as_ref().and_then(|it| it.start.p_told);
         let p = trust.p.map(PTold::Number).or(told).unwrap_or(PTold::Number(file.p.unwrap_or(1.0)));
         let noise = noise(p, trust.tolerance).with_context(|| file.name.clone())?;
@@ -162,32 +147,21 @@ impl RecordedTrack {
                 if file.samples.is_empty() { "no samples" } else { "all samples at one place" };
             bail!("{}: --front: found {found}, expected a track", file.name);
         };
-        let [x, z] = <[f64; 2]>::from(Point2::from(area.max()) - Point2::<f64>::from(area.min()));
-        let radius = front.radius().unwrap_or(f64::INFINITY);
-        let reach = SHORT * radius.min(0.5 * (x + z));
-        let ways = ways(file.samples.iter().map(|it| it.site));
+        let samples = &file.samples;
+        let ways = ways(samples.iter().map(|it| it.site));
+        let reach = reach(samples, &ways, noise.reliability.nominal().probability());
+        let step_mm = (1e3 * reach / f64::from(SPEEDS - 1)).clamp(1.0, 9e4) as u32;
+        let vehicle = AnyVehicle::Unicycle(Unicycle::new(500_000, 1.5, SPEEDS, step_mm)?);
         // A unit of time is that of a motion, so the speed is told in another unit than that of a row.
-        let whole = ways.last().copied().unwrap_or_default();
-        let each = (whole / file.samples.len() as f64 / reach).clamp(LEAST, MOST);
+        let rows = rows(file, &ways, reach);
+        let each = rows.len() as f64 / samples.len() as f64;
         let front = front.moving((front.speed() / each).min(FASTEST))?;
-        let (mut rows, mut last) = (Vec::<Row>::new(), (0, Point2::origin()));
-        for (k, (&Sample { site, label }, driven)) in file.samples.iter().zip(ways).enumerate() {
-            let at = Point2::<f64>::from(site);
-            if rows.is_empty() || (at - last.1).norm() >= APART * reach {
-                let elapsed = (each * (k - last.0) as f64) as f32;
-                let (number, label, passed) = (file.line(k), Some(label), Vec::new());
-                let heading = Heading::default();
-                rows.push(Row { number, site, heading, label, passed, elapsed, driven });
-                last = (k, at);
-            }
-        }
+        let follower = Track::new(area, vehicle, front, noise);
+        let follower = follower.with_context(|| file.name.clone())?.led();
         Ok(Self {
             rows,
-            apart: APART * reach,
-            known: Known::Rows(Box::new(FrontBelief::new(area, front, noise))),
-            width: (FOUND * reach) as f32,
-            near: (AGAIN * reach) as f32,
-            area,
+            width: follower.width(),
+            known: Known::Rows(Box::new(follower)),
             p,
             is_closed: false,
         })
@@ -210,7 +184,6 @@ impl RecordedTrack {
                     _ => None, // on the front itself there is no side
                 },
                 passed: step.passed().collect(),
-                elapsed: 1.0,
                 driven,
             })
         };
@@ -225,30 +198,61 @@ impl RecordedTrack {
             None => Ok(Grid::Fine.into()),
         };
         let given = &file.samples[..start.oracle.len()];
-        let is_watch = start.front.is_some_and(|it| it.watch.is_some());
         let seeking = start.seek.unwrap_or_default().told().with_context(named)?;
-        let follower = Track::new(area, vehicle.with_context(named)?, front, noise);
-        let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
-        // How wide a front that is found may be is for the follower itself to say.
-        let width = follower.width();
-        let known = if is_watch {
-            Known::Rows(Box::new(FrontBelief::new(area, front, noise).given(given).staying()))
+        let vehicle = vehicle.with_context(named)?;
+        let pose = at(start.pose.x, start.pose.z)?;
+        let pose = Pose { site: pose, heading: Heading::from_radians(start.pose.heading)? };
+        let (known, width) = if let Some(metres) = start.front.and_then(|it| it.watch) {
+            let told = (front, FrontStretch::metres(metres)?);
+            let guard = Guard::watching(area, vehicle, told, noise);
+            let guard = guard.and_then(|it| it.seeking(seeking)).with_context(named)?;
+            let width = guard.width();
+            (Known::Guard(Box::new(guard.knowing(given)), pose), width)
         } else {
-            let site = at(start.pose.x, start.pose.z)?;
-            let pose = Pose { site, heading: Heading::from_radians(start.pose.heading)? };
-            Known::Mission(Box::new(follower.knowing(given)), pose)
+            let follower = Track::new(area, vehicle, front, noise);
+            let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
+            let width = follower.width();
+            (Known::Mission(Box::new(follower.knowing(given)), pose), width)
         };
         Ok(Self {
             rows: steps.iter().zip(sites).zip(ways).map(row).collect::<Result<_>>()?,
-            apart: 0.0,
             width,
-            near: (AGAIN / FOUND) as f32 * width,
             known,
-            area,
             p,
             is_closed: reason.as_deref() == Some("closed"),
         })
     }
+}
+
+/// The length of a motion, for one who crosses a front so often: no shorter than from one row to the next.
+fn reach(samples: &[Sample], ways: &[f64], p: f64) -> f64 {
+    let whole = ways.last().copied().unwrap_or_default();
+    let each = (p / (1.0 - p)).ln().min(2.0 * SURE);
+    let (mut odds, mut side, mut changes) = (0.0_f64, None, 0.0);
+    for it in samples {
+        odds = (odds + each * f64::from(it.label.sign())).clamp(-SURE, SURE);
+        if odds.abs() >= SURE && side.replace(odds > 0.0) != Some(odds > 0.0) {
+            changes += 1.0;
+        }
+    }
+    (SHARE * whole / f64::max(changes, 1.0)).max(whole / samples.len() as f64)
+}
+
+/// The rows of a table as motions of such a length: the last of each is its end, and the others are read on the way.
+fn rows(file: &SampleFile, ways: &[f64], reach: f64) -> Vec<Row> {
+    let (mut rows, mut passed, mut last) = (Vec::new(), Vec::new(), None::<Point2<f64>>);
+    for (k, (&Sample { site, label }, &driven)) in file.samples.iter().zip(ways).enumerate() {
+        let at = Point2::<f64>::from(site);
+        if last.is_none_or(|last| (at - last).norm() >= reach) {
+            let (number, heading, label) = (file.line(k), Heading::default(), Some(label));
+            let passed = mem::take(&mut passed);
+            rows.push(Row { number, site, heading, label, passed, driven });
+            last = Some(at);
+        } else {
+            passed.push((site, label.into()));
+        }
+    }
+    rows
 }
 
 /// The whole way to each site, metres.

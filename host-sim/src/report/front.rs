@@ -11,28 +11,18 @@ use crate::report::table::{Cells, Column};
 const TWICE: f64 = 2.0;
 
 /// What the planner is told of the front, and what a car with a turning circle of this radius can follow.
-pub(crate) fn told(
-    &FrontTable { radius, speed, watch }: &FrontTable,
-    circle: Option<f64>,
-) -> String {
-    let follows = circle.map_or(String::new(), |it| {
-        format!(" A car that turns in {it} m follows bends of {:.0} m and more.", TWICE * it)
-    });
+pub(crate) fn told(&FrontTable { speed, watch, .. }: &FrontTable, circle: Option<f64>) -> String {
     let moves = if speed > 0.0 {
         format!("moves by up to {speed} m a step")
     } else {
         "does not move".to_owned()
     };
-    let Some(metres) = watch else {
-        return format!(
-            "The planner is told that the front {moves}, and nothing of how it bends.{follows}"
-        );
-    };
-    let bends = radius.map_or("is straight".to_owned(), |radius| {
-        format!("bends with a radius of {radius} m or more")
+    let watches = watch.map_or(String::new(), |metres| format!(" It watches {metres} m of it."));
+    let follows = circle.map_or(String::new(), |it| {
+        format!(" A car that turns in {it} m follows bends of {:.0} m and more.", TWICE * it)
     });
     format!(
-        "The planner is told that the front {bends}, and {moves}. It watches {metres} m of it.{follows}"
+        "The planner is told that the front {moves}, and nothing of how it bends.{watches}{follows}"
     )
 }
 

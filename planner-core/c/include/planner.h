@@ -401,8 +401,7 @@ typedef struct {
  */
 typedef struct {
   /*
-   The radius of the tightest bend, metres, from 0.1; 0 for a straight line. It counts for a stretch that is watched:
-   if in doubt, name a smaller one. A planner that goes along a front needs none: name any.
+   0 for a straight line, and any radius from 0.1 m for a front that bends: only whether it bends counts.
    */
   double radius;
   /*

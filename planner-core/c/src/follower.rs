@@ -7,7 +7,7 @@ use core::mem::{MaybeUninit, align_of, size_of};
 
 use planner_core::{
     Beside, Front, FrontState, FrontStretch, Guard, Noise, Plan, Planner as _, Prior, Restart as _,
-    Site, Track, Tracker, Unicycle, Waist,
+    Site, Track, Unicycle, Waist,
 };
 
 use crate::area::Ground;
@@ -16,7 +16,7 @@ use crate::snapshot;
 use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
 
 type Tracks = Track<Unicycle, Ground>;
-type Guards = Guard<Unicycle, 16, 16, 3, Ground>;
+type Guards = Guard<Unicycle, Ground>;
 
 /// A planner that goes along a front or watches a stretch of it, in memory of the caller.
 #[repr(align(8))]
@@ -45,8 +45,7 @@ macro_rules! ask {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrontSettings {
-    /// The radius of the tightest bend, metres, from 0.1; 0 for a straight line. It counts for a stretch that is watched:
-    /// if in doubt, name a smaller one. A planner that goes along a front needs none: name any.
+    /// 0 for a straight line, and any radius from 0.1 m for a front that bends: only whether it bends counts.
     pub radius: f64,
     /// How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
     pub speed: f64,
@@ -206,8 +205,7 @@ fn prepared(
         None => Track::new(ground, unicycle, front, noise).map(Either::Track),
         Some(metres) => {
             let stretch = FrontStretch::metres(metres).map_err(|_| Status::Mission)?;
-            let tracker = Tracker::new(planner_core::Workspace::bounds(&ground), front, noise);
-            Guard::new(ground, unicycle, tracker, stretch).map(Either::Guard)
+            Guard::watching(ground, unicycle, (front, stretch), noise).map(Either::Guard)
         }
     };
     Ok((planner.map_err(|_| Status::ToleranceTooLarge)?, noise, samples))
@@ -291,7 +289,7 @@ pub unsafe extern "C" fn front_beside(
         Ok(pose) => pose,
         Err(status) => return status,
     };
-    let beside = ask!(follower, it => it.found().map(|_| it.belief().beside(site, heading)));
+    let beside = ask!(follower, it => it.found().map(|_| it.beside(site, heading)));
     let Some(Beside { left, deviation }) = beside else { return Status::Undecided };
     place.write(FrontCrossing { left: left.into(), deviation: deviation.into() });
     Status::Ok

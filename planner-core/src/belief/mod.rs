@@ -12,7 +12,7 @@
 //! | [`estimate`] | three estimates of the line |
 //! | [`evidence`] | what speaks against a straight, still line |
 //! | [`field`] | where a boundary of unknown shape may be, by a byte for each of some regions |
-//! | [`front`] | a front that bends and moves, by a grid over curves |
+//! | [`lines`] | straight lines in a square, where labels may be wrong and nothing is given |
 //! | [`goal`] | decides when the line is known well enough |
 //! | [`true_labels`] | for labels that are true: the version space |
 //! | [`doubtful_labels`] | for labels that may be wrong: a table of weighted cells, and its distribution |
@@ -31,6 +31,7 @@ pub mod evidence;
 pub mod field;
 pub mod front;
 pub mod goal;
+pub mod lines;
 pub(crate) mod list;
 pub mod noise;
 pub mod observation_log;

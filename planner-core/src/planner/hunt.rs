@@ -1,11 +1,12 @@
-//! A boundary that is sought from nothing and then known by a grid: what [`Seek`](crate::planner::seek) and
-//! [`Guard`](crate::planner::guard) share.
+//! A boundary that is sought from nothing and closed in on by a grid of lines: what [`Seek`](crate::planner::seek) and
+//! [`Track`](crate::planner::track) share.
 //!
 //! As long as nothing is known, it [searches](Scout). Close to the boundary, a place is worth the information of its label
 //! over a price and the way there. The places are ends of the next motion, and some along the mean line.
 
 use crate::belief::field::Seeking;
-use crate::belief::front::{Tracker, Unit, Waist};
+use crate::belief::front::{Front, Unit, Waist};
+use crate::belief::lines::Lines;
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::FromLog as _;
 use crate::belief::predictions::entropy;
@@ -36,23 +37,24 @@ const ABSENT: f32 = 0.01;
 /// It is given up where there is none with more than this probability.
 const GIVEN_UP: f32 = 0.5;
 
+/// There is none where one was known until now with this probability.
+const NOWHERE: f32 = 0.1;
+
 /// A label that tells less than this share of what one can tell is not worth its way.
 const LEAST: f32 = 0.1;
 
 /// The search, and the grid that takes over.
 #[derive(Clone, Debug)]
-pub(crate) struct Hunt<D, const K: usize, const M: usize, const L: usize, G> {
+pub(crate) struct Hunt<D, const K: usize, const M: usize, G> {
     pub(crate) scout: Scout<D, G>,
-    pub(crate) tracker: Tracker<K, M, L>,
+    pub(crate) lines: Lines<K, M>,
 }
 
-impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
-    Hunt<D, K, M, L, G>
-{
+impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G> {
     #[inline] // it is made where it stays, as it may be large
-    pub(crate) fn new(area: G, dynamics: D, tracker: Tracker<K, M, L>) -> Result<Self, SetupError> {
-        let area = aimed_for_by(area, &dynamics, &tracker)?;
-        let mut hunt = Self::of((area, dynamics), tracker);
+    pub(crate) fn new(area: G, dynamics: D, lines: Lines<K, M>) -> Result<Self, SetupError> {
+        let area = aimed_for_by(area, &dynamics, &lines)?;
+        let mut hunt = Self::of((area, dynamics), lines);
         hunt.begin(Seeking::USUAL)?;
         Ok(hunt)
     }
@@ -60,37 +62,35 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for), for one that is
     /// [restarted](Self::restart) before it plans.
     #[inline]
-    pub(crate) fn of(of: (G, D), tracker: Tracker<K, M, L>) -> Self {
-        let bend = tracker.front().bend();
-        let radius = (bend > 0.0).then(|| UNITS_PER_METRE as f32 / bend);
-        Self { scout: Scout::of(of, radius), tracker }
+    pub(crate) fn of(of: (G, D), lines: Lines<K, M>) -> Self {
+        Self { scout: Scout::of(of), lines }
     }
 
-    /// Begins the search with what was said of the boundary.
+    /// Begins the search with what was said of a straight boundary.
     pub(crate) fn begin(&mut self, seeking: Seeking) -> Result<(), SetupError> {
-        let (p, is_near) = (self.tracker.reliability(), self.tracker.is_near());
-        self.scout.begin(seeking, self.tracker.front(), (p, is_near))
+        let (p, is_near) = (self.lines.reliability(), self.lines.is_near());
+        self.scout.begin(seeking, Front::STRAIGHT, (p, is_near))
     }
 
     /// Takes in points whose labels are known for sure, before the first plan.
     pub(crate) fn know(&mut self, points: &[Sample]) {
-        self.tracker.give(points);
+        self.lines.give(points);
         self.scout.quest.know(points);
-        if self.tracker.is_near() {
+        if self.lines.is_near() {
             self.scout.quest.phase = Phase::Follow;
         }
     }
 
     /// What tells the mission from others.
     pub(crate) fn mark(&self, planner: Kind) -> Mark {
-        self.scout.mark(planner, self.tracker.mark())
+        self.scout.mark(planner, self.lines.mark())
     }
 
     /// Begins again in the rectangle around its area.
     pub(crate) fn restart(&mut self, noise: Noise, given: &[Sample]) -> Result<(), SetupError> {
         self.scout.restart(&noise)?;
         let area = self.scout.area.whole().bounds();
-        self.tracker.restart(area, noise.into(), given);
+        self.lines.restart(area, noise.into(), given);
         self.begin(self.scout.quest.seeking())?;
         self.scout.quest.know(given);
         Ok(())
@@ -100,20 +100,20 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
     pub(crate) fn found(&self) -> Option<Waist> {
         let is_sure = match self.scout.quest.phase {
             Phase::Search => false,
-            Phase::Close(_) => self.tracker.share_nowhere() < ABSENT,
+            Phase::Close(_) => self.lines.share_nowhere() < ABSENT,
             Phase::Follow => true,
         };
-        self.tracker.found(self.scout.width()).filter(|_| is_sure)
+        self.lines.found(self.scout.width()).filter(|_| is_sure)
     }
 
     /// What a label at a site is expected to tell, as a share of the most.
-    pub(crate) fn told(tracker: &Tracker<K, M, L>) -> impl Fn(Site) -> f32 {
-        |site| tracker.tells(tracker.share_above(site))
+    pub(crate) fn told(lines: &Lines<K, M>) -> impl Fn(Site) -> f32 {
+        |site| lines.tells(lines.share_above(site))
     }
 
     /// What a label tells at a place that has this share of the curves above it, if it is enough.
     pub(crate) fn tells(&self, share: f32) -> Option<f32> {
-        let told = self.tracker.tells(share);
+        let told = self.lines.tells(share);
         (told > LEAST).then_some(told)
     }
 
@@ -136,14 +136,9 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             let is_far = distance(site - pose.site) > 2.0 * NEAR * self.scout.reach();
             (is_far && self.scout.area.contains(site)).then_some(site)
         };
-        let mut sites = heapless::Vec::<Site, ALONG>::new();
-        for site in (0..ALONG).filter_map(along) {
-            let _ = sites.push(site); // there is room
-        }
-        let mut shares = [0.0; ALONG];
-        self.tracker.shares_above(&sites, &mut shares);
         let [mut first, mut second] = [(None, least); 2];
-        for (&site, share) in sites.iter().zip(shares) {
+        for site in (0..ALONG).filter_map(along) {
+            let share = self.lines.share_above(site);
             let Some(worth) = self.worth(site - pose.site, share) else { continue };
             if worth > first.1 {
                 (first, second) = ((Some(site), worth), first);
@@ -161,7 +156,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         ends: Ends,
         worth: impl Fn(Pose, f32) -> Option<f32>,
     ) -> (Option<Best>, u32) {
-        self.scout.best_end(pose, ends, |end| self.tracker.share_above(end.site), worth)
+        self.scout.best_end(pose, ends, |end| self.lines.share_above(end.site), worth)
     }
 
     /// The next motion of a planner that seeks the boundary.
@@ -184,7 +179,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let worth = |end: Pose, share: f32| self.worth(end.site - pose.site, share);
         let ends = Ends { circles: SEEKING, beside: 0, most: LOOKED_AT - ALONG as u32 };
         let (best, examined) = self.best_end(pose, ends, worth);
-        let waist = self.tracker.waist();
+        let waist = self.lines.waist();
         let (far, worth) = self.far_places(pose, waist, best.map_or(0.0, |best| best.worth));
         // It has gone round about a place without a label.
         let is_vain = best.is_some() && self.scout.silence.is_long();
@@ -193,7 +188,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         let least = worth * self.scout.price;
         let least = if least > FAINT { least } else { FAINT };
         let best = best.map(|best| (best, Stage::Seek));
-        self.scout.go(pose, to, best, (least, examined), Self::told(&self.tracker))
+        self.scout.go(pose, to, best, (least, examined), Self::told(&self.lines))
     }
 
     /// Takes in the end of a motion.
@@ -203,18 +198,16 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
         reading: Option<Reading>,
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
-        if reading.is_some() && tolerance > self.tracker.tolerance() {
+        if reading.is_some() && tolerance > self.lines.tolerance() {
             return Err(ObservationError::Tolerance(tolerance));
         }
         if let Some(reading) = reading {
             self.scout.hear(pose.site, reading);
         }
-        if self.scout.quest.phase != Phase::Search {
-            self.tracker.moved(pose.site, 1.0);
-            match reading {
-                Some(reading) => self.tracker.observe_within(pose.site, reading, tolerance)?,
-                None => self.tracker.settle(pose.site),
-            }
+        if let Some(reading) = reading
+            && self.scout.quest.phase != Phase::Search
+        {
+            self.lines.observe_within(pose.site, reading, tolerance)?;
         }
         self.scout.silence.observe(reading.is_some());
         self.scout.quest.moved(pose.site, reading.is_some());
@@ -226,8 +219,7 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
                     Some(left) => Phase::Close(left),
                     None => Phase::Search,
                 };
-                if self.scout.quest.phase == Phase::Search
-                    || self.tracker.share_nowhere() > GIVEN_UP
+                if self.scout.quest.phase == Phase::Search || self.lines.share_nowhere() > GIVEN_UP
                 {
                     self.scout.quest.search_on();
                 }
@@ -239,33 +231,17 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
 
     /// Closes in on the boundary, if the search has come near to it.
     fn take_lead(&mut self, from: Site) {
-        let Some(lead) = self.scout.take_lead(self.tracker.is_certain(), from) else { return };
-        let half = (lead.within * UNITS_PER_METRE as f32) as i32;
-        let corner = |sign: i32| {
-            let by = Vector::new(sign * half, sign * half)?;
-            lead.place.step(by).ok()
-        };
-        let (Some(min), Some(max)) = (corner(-1), corner(1)) else { return };
-        let Ok(square) = Area::new(min, max) else { return };
-        self.tracker.close_in(square, self.scout.quest.labels_near(&lead), lead.nowhere);
-        self.scout.quest.close_in(1.0 - entropy(self.tracker.counted()));
+        let Some(lead) = self.scout.take_lead(self.lines.is_certain(), from) else { return };
+        let Some(square) = square(lead.place, lead.within) else { return };
+        self.lines.close_in(square, self.scout.quest.labels_near(&lead), lead.nowhere);
+        self.scout.quest.close_in(1.0 - entropy(self.lines.counted()));
     }
 
     /// Closes in on a boundary that was known near a site until now.
     pub(crate) fn close_near(&mut self, site: Site) {
-        self.tracker.seek_near(site, self.scout.near());
-        self.scout.quest.close_in(1.0 - entropy(self.tracker.counted()));
-    }
-
-    /// Begins again where labels speak against what is known of the boundary.
-    pub(crate) fn seek_anew(&mut self, site: Site) {
-        if self.scout.quest.phase == Phase::Follow {
-            let near = (site, self.scout.near());
-            let begins = self.tracker.seek_anew(near, self.scout.area.whole().bounds());
-            if begins && self.tracker.is_open() {
-                self.scout.quest.lose(&self.scout.area);
-            }
-        }
+        let Some(square) = square(site, self.scout.near()) else { return };
+        self.lines.close_in(square, core::iter::empty(), NOWHERE);
+        self.scout.quest.close_in(1.0 - entropy(self.lines.counted()));
     }
 
     pub(crate) fn observe_on_the_way(
@@ -277,11 +253,18 @@ impl<D: Dynamics, const K: usize, const M: usize, const L: usize, G: Workspace>
             return Ok(false);
         }
         let is_kept = self.scout.quest.phase == Phase::Search
-            || self.tracker.observe_on_the_way(site, reading)?;
+            || self.lines.observe_on_the_way(site, reading)?;
         if is_kept {
             self.scout.hear(site, reading);
             self.scout.silence.hear();
         }
         Ok(is_kept)
     }
+}
+
+/// The square about a site that reaches so many metres to either side.
+fn square(site: Site, metres: f32) -> Option<Area> {
+    let half = (metres * UNITS_PER_METRE as f32) as i32;
+    let corner = |half: i32| site.step(Vector::new(half, half)?).ok();
+    Area::new(corner(-half)?, corner(half)?).ok()
 }

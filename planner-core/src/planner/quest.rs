@@ -8,8 +8,8 @@
 //! ```
 //!
 //! - **Search**: the robot drives along a [`Route`], and a [field](crate::belief::field) takes in the labels.
-//! - **Close**: the tracker begins in a square about the last crossing, with the labels that were read there.
-//! - **Follow**: the tracker knows the boundary, or was told about where it is.
+//! - **Close**: a grid of lines begins in a square about the last crossing, with the labels that were read there.
+//! - **Follow**: the planner knows the boundary, or was told about where it is.
 
 use crate::belief::curve::nearest_pair;
 use crate::belief::field::{Field, FieldMemory, Seeking, Sought};
@@ -138,7 +138,7 @@ impl Quest {
         approach: Approach::NONE,
     };
 
-    /// Begins in an area with labels that are true with probability `p`. A straight boundary has no `patches`. The tracker
+    /// Begins in an area with labels that are true with probability `p`. A straight boundary has no `patches`. The planner
     /// may be told about where it is.
     ///
     /// # Errors
@@ -219,7 +219,7 @@ impl Quest {
         Hears { odds: self.field.odds(), apart }
     }
 
-    /// Where the boundary is close enough for the tracker: of labels that are surely true, between the last two that
+    /// Where the boundary is close enough for the grid: of labels that are surely true, between the last two that
     /// differ; otherwise where the labels changed last, if there most likely is a boundary. Labels come so many metres apart.
     pub(crate) fn lead(&self, is_certain: bool, apart: f32) -> Option<Lead> {
         // Where nothing was found, a change that was there before does not count again.
@@ -252,13 +252,13 @@ impl Quest {
         })
     }
 
-    /// The tracker takes over, for labels that carry so many bits each.
+    /// The grid takes over, for labels that carry so many bits each.
     pub(crate) fn close_in(&mut self, bits: f32) {
         let bits = if bits > 1e-3 { bits } else { 1e-3 };
         self.phase = Phase::Close((BITS / bits) as u16);
     }
 
-    /// The tracker has found nothing: the search goes on.
+    /// The grid has found nothing: the search goes on.
     pub(crate) fn search_on(&mut self) {
         (self.phase, self.news) = (Phase::Search, 0);
         self.sought = self.field.sought();

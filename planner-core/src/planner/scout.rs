@@ -34,7 +34,7 @@ const SQUARE: f32 = 1.5;
 /// The usual price of a label, as a share of the reach: it keeps places that are near from being all that is considered.
 pub(crate) const PRICE: f32 = 0.5;
 
-/// The reach is at most this share of the tightest bend's radius, and of the mean of the area's sides.
+/// The reach is at most this share of the mean of the area's sides.
 const SHORT: f32 = 0.125;
 
 /// A boundary is found where its half-width is below so many [spans](Scout::span).
@@ -90,14 +90,11 @@ pub(crate) struct Best {
 }
 
 impl<D: Dynamics, G: Workspace> Scout<D, G> {
-    /// In the part of an area that motions [aim for](crate::planner::setup::aimed_for). Motions are short beside the area,
-    /// and beside a radius if one counts, lattice units.
+    /// In the part of an area that motions [aim for](crate::planner::setup::aimed_for). Motions are short beside the area.
     #[inline] // it is made where it stays, as it may be large
-    pub(crate) fn of((area, dynamics): (G, D), radius: Option<f32>) -> Self {
-        let (grid, side) = (dynamics.grid(), area.bounds().mean_side());
-        let radius = radius.unwrap_or(side);
-        let longest = SHORT * if radius < side { radius } else { side };
-        let most = (longest / grid.step_units()) as u16;
+    pub(crate) fn of((area, dynamics): (G, D)) -> Self {
+        let grid = dynamics.grid();
+        let most = (SHORT * area.bounds().mean_side() / grid.step_units()) as u16;
         let fastest = grid.speeds().saturating_sub(1).min(most).max(1);
         let price = PRICE * f32::from(fastest) * grid.step_units();
         Self { area, dynamics, fastest, price, silence: Silence::NONE, quest: Quest::NONE }
@@ -113,7 +110,7 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
         front: Front,
         (p, is_near): (f32, bool),
     ) -> Result<(), SetupError> {
-        let patches = front.bend() > 0.0;
+        let patches = front.radius().is_some();
         self.quest.begin(&self.area, (seeking, patches), p, is_near)
     }
 

@@ -1,7 +1,7 @@
 //! A planner that finds a straight boundary from nothing, and then lends samples to the planner that goes on.
 //!
 //! All other planners of straight lines begin with given points of both labels. [`Seek`] begins with none, or with
-//! points of one label. It drives along a route over the area. Once a line is close, it learns from a [`Tracker`] of lines,
+//! points of one label. It drives along a route over the area. Once a line is close, it learns from a grid of [`Lines`],
 //! and goes where a label is worth the most information for its price and the way there (`hunt.rs`). It ends by itself:
 //!
 //! | reason | what is true then |
@@ -18,13 +18,14 @@
 //!
 //! **Labels that may be wrong.** A label that was read is not certain. So it lends four places at which it is sure of
 //! the label, two on either side. Each of the four labels is wrong with a probability of at most 1 in 3,000, as the
-//! tracker has it. A line that they rule out cannot be found any more. So a later interval is right less often. Of 2,000
+//! lines has it. A line that they rule out cannot be found any more. So a later interval is right less often. Of 2,000
 //! missions with labels of 90 and 70 % it happened in one.
 
 use heapless::Vec;
 
 use crate::belief::evidence::Alarm;
-use crate::belief::front::{FrontMemory, Tracker, Unit, Waist};
+use crate::belief::front::{Unit, Waist};
+use crate::belief::lines::{Lines, LinesMemory};
 use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::belief::tolerance::Tolerance;
@@ -58,12 +59,12 @@ const FARTHER: f32 = 1.2;
 const STEPS: u32 = 24;
 
 /// A planner that finds a straight boundary from nothing: `D` is the vehicle, `G` the area, and `K` and `M` are the
-/// directions and offsets of its [`Tracker`]. 16 x 16 is enough.
+/// directions and offsets of its [`Lines`]. 16 x 16 is enough.
 ///
 /// ```
 /// # use planner_core::{
-/// #     Area, Front, Goal, Heading, Label, Lookahead, Noise, Plan, Planner as _, Pose, Seek, Site,
-/// #     StopReason, Tracker, Unicycle, VersionSpace,
+/// #     Area, Goal, Heading, Label, Lines, Lookahead, Noise, Plan, Planner as _, Pose, Seek, Site,
+/// #     StopReason, Unicycle, VersionSpace,
 /// # };
 /// # use planner_core::nalgebra::Point2;
 /// # let read = |site: Site| {
@@ -71,7 +72,7 @@ const STEPS: u32 = 24;
 /// #     if at.y > 0.3 * at.x + 9.0 { Label::Positive } else { Label::Negative }
 /// # };
 /// let area = Area::metres([0.0, 0.0], [20.0, 20.0])?;
-/// let lines = Tracker::<16, 16, 1>::new(area, Front::STRAIGHT, Noise::NONE);
+/// let lines = Lines::<16, 16>::new(area, Noise::NONE);
 /// let mut seek = Seek::new(area, Unicycle::default(), lines)?;
 /// let mut pose = Pose::at([2.0, 1.0], Heading::default())?;
 /// let why = loop {
@@ -88,7 +89,7 @@ const STEPS: u32 = 24;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Seek<D, const K: usize, const M: usize, G = Area> {
-    hunt: Hunt<D, K, M, 1, G>,
+    hunt: Hunt<D, K, M, G>,
     samples: Vec<Sample, GIVEN, u8>,
     is: State,
 }
@@ -103,7 +104,7 @@ enum State {
     Bent,
 }
 
-/// What a [`Seek`] has to remember beside its tracker.
+/// What a [`Seek`] has to remember beside its lines.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SeekMemory {
@@ -119,9 +120,9 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
     /// # Errors
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
-    pub fn new(area: G, dynamics: D, tracker: Tracker<K, M, 1>) -> Result<Self, SetupError> {
+    pub fn new(area: G, dynamics: D, lines: Lines<K, M>) -> Result<Self, SetupError> {
         let price = Far::across(&area).price();
-        let mut hunt = Hunt::new(area, dynamics, tracker)?;
+        let mut hunt = Hunt::new(area, dynamics, lines)?;
         hunt.scout.price = units(price as f32);
         Ok(Self { hunt, samples: Vec::new(), is: State::Sought })
     }
@@ -160,8 +161,8 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
 
     /// Whether the labels that are kept make a version space: what it takes to go on, and no less.
     fn judge(&mut self) {
-        let tracker = &self.hunt.tracker;
-        if !tracker.is_certain() {
+        let lines = &self.hunt.lines;
+        if !lines.is_certain() {
             if let Some(sure) = self.hunt.found().and_then(|waist| self.sure(waist)) {
                 self.samples = sure.into_iter().collect();
                 self.is = State::Found;
@@ -172,7 +173,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
         if !has(Label::Positive) || !has(Label::Negative) {
             return;
         }
-        let tolerance = tracker.tolerance();
+        let tolerance = lines.tolerance();
         let made = if tolerance == Tolerance::NONE {
             VersionSpace::<GIVEN>::new(&self.samples)
         } else {
@@ -204,7 +205,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
             *sample = (0..STEPS).find_map(|_| {
                 off *= FARTHER;
                 let site = place(end * long, side * off)?;
-                let above = self.hunt.tracker.share_above(site);
+                let above = self.hunt.lines.share_above(site);
                 let (label, other) = if side > 0.0 {
                     (Label::Positive, 1.0 - above)
                 } else {
@@ -236,12 +237,12 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G>
         }
     }
 
-    /// Takes in a label that the tracker has taken in.
+    /// Takes in a label that the lines has taken in.
     fn take(&mut self, site: Site, reading: Reading) {
         if let Reading::Side(label) = reading
             && self.is == State::Sought
         {
-            if self.hunt.tracker.is_certain() {
+            if self.hunt.lines.is_certain() {
                 self.keep(Sample { site, label });
             }
             self.judge();
@@ -255,7 +256,7 @@ fn units(metres: f32) -> f32 {
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek<D, K, M, G> {
-    type Belief = Tracker<K, M, 1>;
+    type Belief = Lines<K, M>;
 
     fn plan(&mut self, pose: Pose) -> Plan {
         match self.is {
@@ -290,24 +291,24 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Planner for Seek
         Ok(is_kept)
     }
 
-    fn belief(&self) -> &Tracker<K, M, 1> {
-        &self.hunt.tracker
+    fn belief(&self) -> &Lines<K, M> {
+        &self.hunt.lines
     }
 
     fn alarm(&self) -> Option<Alarm> {
-        self.hunt.tracker.evidence().alarm()
+        self.hunt.lines.evidence().alarm()
     }
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek<D, K, M, G> {
-    type Snapshot = Snapshot<FrontMemory<K, M, 1>, SeekMemory>;
+    type Snapshot = Snapshot<LinesMemory<K, M>, SeekMemory>;
 
     fn snapshot(&self) -> Self::Snapshot {
-        let Self { hunt: Hunt { tracker, scout }, samples, is } = self;
+        let Self { hunt: Hunt { lines, scout }, samples, is } = self;
         let Scout { silence, quest, .. } = scout;
         let (silence, quest) = (*silence, quest.memory());
         let memory = SeekMemory { silence, quest, samples: samples.clone(), is: *is };
-        Snapshot::new(self.hunt.mark(Kind::Seek), tracker.log(), memory)
+        Snapshot::new(self.hunt.mark(Kind::Seek), lines.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
@@ -315,7 +316,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
         if !self.hunt.scout.quest.recall(&memory.quest) {
             return Err(ReplayError::Spoilt.into());
         }
-        self.hunt.tracker.replay(log)?;
+        self.hunt.lines.replay(log)?;
         self.hunt.scout.silence = memory.silence;
         (self.samples, self.is) = (memory.samples.clone(), memory.is);
         Ok(())
@@ -325,15 +326,14 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Persist for Seek
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::belief::front::Front;
     use crate::belief::noise::Noise;
     use crate::geometry::heading::Heading;
     use crate::motion::unicycle::Unicycle;
 
     fn seek() -> Seek<Unicycle, 16, 16> {
         let area = Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap();
-        let tracker = Tracker::new(area, Front::STRAIGHT, Noise::NONE);
-        Seek::new(area, Unicycle::default(), tracker).unwrap()
+        let lines = Lines::new(area, Noise::NONE);
+        Seek::new(area, Unicycle::default(), lines).unwrap()
     }
 
     fn after(labels: &[(f64, f64, Label)]) -> Seek<Unicycle, 16, 16> {

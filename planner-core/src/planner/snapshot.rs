@@ -32,11 +32,11 @@ use crate::planner::Planner;
 /// | 4 | the audit of look-ahead |
 /// | 5 | its odds |
 /// | 6 | how many motions its way should take, and of Algorithm 2 whether the readings on the way are odd in number |
-/// | 7 | of a tracker, where it last counted a label |
-/// | 8 | and whether it knew a front |
+/// | 7 | of a grid of lines, where it last counted a label |
 /// | 9 | which mission they are of, and of look-ahead what speaks against the model |
 /// | 11 | of a planner that seeks a boundary, the labels of an area and the route through it |
-pub const SNAPSHOT_VERSION: u16 = 11;
+/// | 12 | of a front that is watched, where it was all along the stretch |
+pub const SNAPSHOT_VERSION: u16 = 12;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

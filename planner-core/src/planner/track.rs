@@ -17,10 +17,11 @@
 //! A mission ends where no front is left to find, where there is no way on,
 //! where the robot is back at its last label, or where [all of the front](Track::until_closed) is mapped.
 
-use crate::belief::curve::{Curve, CurveMemory, nearest_pair};
+use crate::belief::curve::{Curve, CurveMemory, MapPlace, nearest_pair};
 use crate::belief::evidence::Alarm;
 use crate::belief::field::{REMEMBERED, Seeking};
-use crate::belief::front::{Front, FrontMemory, Tracker, Waist};
+use crate::belief::front::{Beside, Front, FrontStretch, Unit, Waist, metres};
+use crate::belief::lines::{Lines, LinesMemory};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ReplayError};
 use crate::belief::sample::{Reading, Sample};
@@ -30,7 +31,9 @@ use crate::belief::weight::Prior;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::approximate::{METRE, distance};
 use crate::geometry::area::Area;
+use crate::geometry::heading::Heading;
 use crate::geometry::lattice::Site;
+use crate::geometry::mark::Mark;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::aim::{Aim, Onward};
@@ -44,6 +47,7 @@ use crate::planner::scout::{Best, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
+use crate::planner::stretch::{Known, PARTS, Stretch};
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// After so many alarms without a place in between it is lost.
@@ -66,6 +70,9 @@ const SOON: u8 = 2;
 /// Near and far are so many reaches beside the front.
 const BESIDE: f32 = 0.5;
 const ANYWHERE: f32 = 2.0;
+
+/// A robot that is led has turned where it has gone back by so many reaches.
+const BACK: f32 = 2.0;
 
 /// A front may have moved on by so many reaches where the robot drives back to it.
 const MOVED: f32 = 2.0;
@@ -92,31 +99,40 @@ const MOVED: f32 = 2.0;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Track<D, G = Area> {
-    hunt: Hunt<D, DIRECTIONS, OFFSETS, 1, G>,
+pub struct Track<D, G = Area, const N: usize = 0> {
+    hunt: Hunt<D, DIRECTIONS, OFFSETS, G>,
     front: Front,
     curve: Curve,
     lap: Lap,
+    /// What it goes along to and fro, if it has a part.
+    stretch: Stretch<N>,
     /// The pose at the last label that was read at the end of a motion.
     heard_at: Option<Pose>,
     /// Which label along the front is the next, of as many as there are from one on certain ground to the next but one.
     turn: u8,
     /// Whether it ends once the robot has gone along all of the front.
     ends: bool,
+    /// Where it is led, and by how far it has gone back along the front; `None` if it plans itself.
+    led: Option<(Site, f32)>,
 }
 
 /// What a follower has to remember beside its curve.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct TrackMemory {
+pub struct TrackMemory<const N: usize = 0> {
     silence: Silence,
     lap: Lap,
+    stretch: Stretch<N>,
     heard_at: Option<Pose>,
     turn: u8,
     quest: QuestMemory,
     /// Before the curve begins.
-    closing: Option<FrontMemory<DIRECTIONS, OFFSETS, 1>>,
+    closing: Option<LinesMemory<DIRECTIONS, OFFSETS>>,
 }
+
+/// A [`Track`] that stays with a stretch of the front, about the place where it finds it: it goes to and fro. It knows where
+/// the front is [all along](Track::beside) the stretch, and does not end for a closed front.
+pub type Guard<D, G = Area> = Track<D, G, PARTS>;
 
 impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// A planner that knows nothing yet but how fast a front may move, and how often labels are true. Patches may lie in the
@@ -134,28 +150,88 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         front: Front,
         noise: impl Into<Noise<AnyReliability>>,
     ) -> Result<Self, SetupError> {
-        let noise = noise.into();
-        let area = aimed_for(area, &dynamics, noise.tolerance)?;
-        let mut track = Self::of((area, dynamics), front, false);
-        track.hunt.tracker.restart(area.whole().bounds(), noise, &[]);
-        track.begin_curve(noise);
-        // The usual radius of a patch suits every area.
-        track.begin(Seeking::USUAL)?;
-        Ok(track)
+        Self::made((area, dynamics), (front, 0.0), noise.into())
     }
 
     /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for), for one that is
     /// [restarted](Restart::restart) before it plans.
     #[inline]
     pub(crate) fn of(of: (G, D), front: Front, ends: bool) -> Self {
+        Self { ends, ..Self::blank(of, (front, 0.0)) }
+    }
+
+    /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been
+    /// followed to the border at both ends.
+    #[must_use]
+    pub fn until_closed(self) -> Self {
+        Self { ends: true, ..self }
+    }
+}
+
+impl<D: Dynamics, G: Workspace> Track<D, G> {
+    /// The same, but it is led: another drives, back along the front as well. A plan only forgets the places that it has
+    /// [mapped](Curve::mapped) so far.
+    #[must_use]
+    pub fn led(self) -> Self {
+        Self { led: Some((Site::ORIGIN, 0.0)), ..self }
+    }
+}
+
+impl<D: Dynamics, G: Workspace> Guard<D, G> {
+    /// As [`Track::new`], for so much of the front.
+    ///
+    /// # Errors
+    /// [`SetupError`].
+    #[inline]
+    pub fn watching(
+        area: G,
+        dynamics: D,
+        (front, stretch): (Front, FrontStretch),
+        noise: impl Into<Noise<AnyReliability>>,
+    ) -> Result<Self, SetupError> {
+        Self::made((area, dynamics), (front, stretch.length()), noise.into())
+    }
+
+    /// As [`Track::of`].
+    #[inline]
+    pub(crate) fn guard_of(of: (G, D), front: Front, stretch: FrontStretch) -> Self {
+        Self::blank(of, (front, stretch.length()))
+    }
+
+    /// The middle of the stretch, and its direction. `None` before the front is found.
+    pub fn stretch(&self) -> Option<Pose> {
+        self.stretch.middle()
+    }
+}
+
+impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
+    #[inline]
+    fn made(
+        (area, dynamics): (G, D),
+        told: (Front, f32),
+        noise: Noise<AnyReliability>,
+    ) -> Result<Self, SetupError> {
+        let area = aimed_for(area, &dynamics, noise.tolerance)?;
+        let mut track = Self::blank((area, dynamics), told);
+        track.hunt.lines.restart(area.whole().bounds(), noise, &[]);
+        track.begin_curve(noise);
+        // The usual radius of a patch suits every area.
+        track.begin(Seeking::USUAL)?;
+        Ok(track)
+    }
+
+    #[inline]
+    fn blank(of: (G, D), (front, stretch): (Front, f32)) -> Self {
         Self {
-            hunt: Hunt::of(of, Tracker::blank(Front::STRAIGHT.as_fast_as(front))),
+            hunt: Hunt::of(of, Lines::blank()),
             front,
             curve: Curve::NONE,
             lap: Lap::NONE,
+            stretch: Stretch::new(stretch),
             heard_at: None,
             turn: 0,
-            ends,
+            ends: false,
+            led: None,
         }
     }
 
@@ -167,8 +243,14 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         self.curve.restart((scout.reach() * METRE, self.front), map, noise);
     }
 
+    /// What tells the mission from others.
+    fn mark(&self) -> Mark {
+        let (kind, curve) = (if N > 0 { Kind::Guard } else { Kind::Track }, self.curve.mark());
+        self.hunt.scout.mark(kind, curve.and([self.stretch.length().to_bits()]))
+    }
+
     fn begin(&mut self, seeking: Seeking) -> Result<(), SetupError> {
-        self.hunt.scout.begin(seeking, self.front, (self.hunt.tracker.reliability(), false))
+        self.hunt.scout.begin(seeking, self.front, (self.hunt.lines.reliability(), false))
     }
 
     /// Where the front is beside the robot, or where it drives back to; `None` as long as it is not found, and where it is
@@ -181,13 +263,6 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// of the turning circle if that is longer.
     pub fn width(&self) -> f32 {
         self.hunt.scout.width()
-    }
-
-    /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been followed to
-    /// the border at both ends.
-    #[must_use]
-    pub fn until_closed(self) -> Self {
-        Self { ends: true, ..self }
     }
 
     /// The same with what is said of a front of which nothing is known.
@@ -210,14 +285,14 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// Two points that differ and are near each other are where it begins. Where labels may be wrong, points that are
     /// further apart are closed in on by the grid.
     fn know(&mut self, points: &[Sample]) {
-        let Hunt { scout, tracker } = &mut self.hunt;
+        let Hunt { scout, lines } = &mut self.hunt;
         match nearest_pair(points) {
             Some(pair) if scout.is_bracket(pair) => {
                 scout.quest.know(points);
                 scout.quest.phase = Phase::Follow;
                 self.curve.begin(pair, points);
             }
-            Some(_) if !tracker.is_certain() => self.hunt.know(points),
+            Some(_) if !lines.is_certain() => self.hunt.know(points),
             _ => scout.quest.know(points),
         }
     }
@@ -238,6 +313,13 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// Whether the robot has gone along all of a closed front, and is back where it found it.
     pub const fn is_closed(&self) -> bool {
         self.lap.is_closed()
+    }
+
+    /// Where the front crosses the line through a site that is square to a heading, on average, and how well that is known.
+    /// For a [`Guard`] all along its stretch. Of no meaning before the front [is found](Self::found).
+    pub fn beside(&self, site: Site, heading: Heading) -> Beside {
+        let of_stretch = self.stretch.beside(site, heading, self.front.pace());
+        of_stretch.unwrap_or_else(|| self.curve.beside(site, heading))
     }
 
     /// Begins to follow the front between two true labels that differ, if the search has come near to it.
@@ -266,11 +348,11 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.hunt.observe(pose, reading, tolerance)?;
-        if self.hunt.tracker.is_certain() {
+        if self.hunt.lines.is_certain() {
             self.take_lead(pose);
         } else if let Some(waist) = self.hunt.found() {
             self.curve.begin_at(waist, (false, 0.0));
-            self.curve.doubt(self.hunt.tracker.share_nowhere());
+            self.curve.doubt(self.hunt.lines.share_nowhere());
             self.follow_from(pose);
         }
         Ok(())
@@ -283,7 +365,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         }
         self.curve.lose();
         let scout = &mut self.hunt.scout;
-        if self.hunt.tracker.is_certain() {
+        if self.hunt.lines.is_certain() {
             scout.quest.lose(&scout.area);
         } else {
             self.hunt.close_near(pose.site);
@@ -319,9 +401,42 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         }
     }
 
+    /// Turns round where the robot has gone back, from a site and by so much, to another site.
+    fn go_led(&mut self, (from, back): (Site, f32), to: Site) -> (Site, f32) {
+        let Waist { heading, .. } = self.curve.now();
+        let [gone, _] = Unit::of(heading).seen(metres(to - from));
+        let back = if self.curve.is_flipped() { back + gone } else { back - gone };
+        if back > BACK * self.curve.reach() {
+            self.curve.turn_round();
+            return (to, 0.0);
+        }
+        (to, if back > 0.0 { back } else { 0.0 })
+    }
+
+    /// Keeps the stretch in mind, and turns at its ends, and where the front leaves the area.
+    fn keep_stretch(&mut self, pose: Pose) {
+        let (reach, found) = (self.hunt.scout.reach(), self.found());
+        let is_along = !self.curve.is_flipped();
+        let then = |MapPlace { waist, age, .. }| Known { waist, age };
+        let passed = self.curve.places_then().map(then);
+        let is_at_end = self.stretch.observe(
+            pose.site,
+            (found, passed),
+            (is_along, reach * METRE, self.front.pace()),
+        );
+        let is_over = |waist| {
+            let aim = Aim::new(waist, is_along);
+            aim.onward((&self.hunt.scout.area, reach), pose, 1) == Onward::Over
+        };
+        if is_at_end || found.is_some_and(is_over) {
+            self.curve.turn_round();
+            self.stretch.turn();
+        }
+    }
+
     /// The next motion where the front is sought.
     fn seek(&mut self, pose: Pose) -> Plan {
-        if !self.hunt.tracker.is_certain() {
+        if !self.hunt.lines.is_certain() {
             return self.hunt.seek(pose);
         }
         self.take_lead(pose); // between given points
@@ -379,11 +494,14 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     }
 }
 
-impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
+impl<D: Dynamics, G: Workspace, const N: usize> Planner for Track<D, G, N> {
     type Belief = Curve;
 
     fn plan(&mut self, pose: Pose) -> Plan {
         self.curve.clear_mapped();
+        if self.led.is_some() {
+            return Plan::Stop(StopReason::Undecided);
+        }
         if self.ends && self.lap.is_over() {
             return Plan::Stop(StopReason::Closed);
         }
@@ -443,7 +561,11 @@ impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
         }
         scout.silence.observe(reading.is_some());
         scout.quest.moved(pose.site, reading.is_some());
-        self.keep_lap(pose);
+        match self.led {
+            Some(led) => self.led = Some(self.go_led(led, pose.site)),
+            None if N > 0 => self.keep_stretch(pose),
+            None => self.keep_lap(pose),
+        }
         Ok(())
     }
 
@@ -479,13 +601,14 @@ impl<D: Dynamics, G: Workspace> Planner for Track<D, G> {
     }
 }
 
-impl<D: Dynamics, G: Workspace> Restart for Track<D, G> {
+impl<D: Dynamics, G: Workspace, const N: usize> Restart for Track<D, G, N> {
     /// It stores no samples.
     const ROOM: [usize; 2] = [u16::MAX as usize, 1];
 
     /// Begins again in the rectangle around its area. Nothing is told of how likely fronts are.
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at, self.turn) = (Lap::NONE, None, 0);
+        self.stretch = Stretch::new(self.stretch.length());
         self.hunt.restart(noise, &[])?;
         self.begin_curve(noise.into());
         self.begin(self.hunt.scout.quest.seeking())?;
@@ -494,32 +617,32 @@ impl<D: Dynamics, G: Workspace> Restart for Track<D, G> {
     }
 }
 
-impl<D: Dynamics, G: Workspace> Persist for Track<D, G> {
-    type Snapshot = Snapshot<CurveMemory, TrackMemory>;
+impl<D: Dynamics, G: Workspace, const N: usize> Persist for Track<D, G, N> {
+    type Snapshot = Snapshot<CurveMemory, TrackMemory<N>>;
 
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { silence, quest, .. } = &self.hunt.scout;
         let (silence, quest) = (*silence, quest.memory());
         let Self { lap, heard_at, turn, .. } = *self;
-        let closing = (!self.curve.is_begun()).then(|| self.hunt.tracker.log());
-        Snapshot::new(
-            self.hunt.scout.mark(Kind::Track, self.curve.mark()),
-            self.curve.log(),
-            TrackMemory { silence, lap, heard_at, turn, quest, closing },
-        )
+        let stretch = self.stretch.clone();
+        let closing = (!self.curve.is_begun()).then(|| self.hunt.lines.log());
+        let memory = TrackMemory { silence, lap, stretch, heard_at, turn, quest, closing };
+        Snapshot::new(self.mark(), self.curve.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
-        let (log, memory) = snapshot.open(self.hunt.scout.mark(Kind::Track, self.curve.mark()))?;
-        if !memory.lap.is_possible() || !self.hunt.scout.quest.recall(&memory.quest) {
+        let (log, memory) = snapshot.open(self.mark())?;
+        let is_possible = memory.lap.is_possible() && memory.stretch.is_possible();
+        if !is_possible || !self.hunt.scout.quest.recall(&memory.quest) {
             return Err(ReplayError::Spoilt.into());
         }
         self.curve.replay(log)?;
         if let Some(closing) = &memory.closing {
-            self.hunt.tracker.replay(closing)?;
+            self.hunt.lines.replay(closing)?;
         }
         (self.lap, self.heard_at) = (memory.lap, memory.heard_at);
         self.turn = memory.turn % (2 * AUDIT);
+        self.stretch = memory.stretch.clone();
         self.hunt.scout.silence = memory.silence;
         Ok(())
     }

@@ -10,7 +10,7 @@
 //! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
 //! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
 //! | `vehicles` | all algorithms, all vehicles | as `standard` |
-//! | `track` | the follower of fronts | a tracker of 16 x 16 x 3, any number of labels |
+//! | `track` | the follower of fronts | a curve, any number of labels |
 //! | `panicking` | nothing | a panic: that of an index |
 //!
 //! All but `vehicles` have the unicycle alone. It is built for Arm, and for RISC-V (`riscv32imac`) as QEMU's `virt`.

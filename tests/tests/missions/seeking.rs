@@ -17,8 +17,8 @@ use host_sim::mission::results::Ending;
 use host_sim::world::{World, reading};
 use nalgebra::{Point2, Vector2};
 use planner_core::{
-    AnyVehicle, Area, Far, Front, Heading, Label, Line, Noise, OneLabel, Plan, Planner as _, Pose,
-    Reading, Sample, Seek, Site, StopReason, Tracker, Unicycle,
+    AnyVehicle, Area, Far, Heading, Label, Line, Lines, Noise, OneLabel, Plan, Planner as _, Pose,
+    Reading, Sample, Seek, Site, StopReason, Unicycle,
 };
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -247,8 +247,8 @@ fn points_of_one_label_are_taken_as_known() {
     let area = Area::metres([0.0, 0.0], FIELD).expect("an area");
     let at = |x: f64, z: f64, label| Sample { site: Site::metres([x, z]).expect("near"), label };
     let points = [at(1.0, 1.0, Label::Positive), at(19.0, 2.0, Label::Positive)];
-    let tracker = Tracker::<16, 16, 1>::new(area, Front::STRAIGHT, Noise::NONE);
-    let mut seek = Seek::new(area, Unicycle::default(), tracker).expect("room").knowing(&points);
+    let lines = Lines::<16, 16>::new(area, Noise::NONE);
+    let mut seek = Seek::new(area, Unicycle::default(), lines).expect("room").knowing(&points);
     assert!(seek.given().is_empty());
     let pose = Pose::at([10.0, 19.0], Heading::default()).expect("a pose");
     seek.observe(pose, Some(Label::Negative.into())).expect("a label");

@@ -1,7 +1,7 @@
 //! Robots that watch a stretch of a front: how well they know all of it at all times.
 //!
 //! A mission has 150 motions of up to 2 m with a label at the end of each. It begins where the front has just been found, on a
-//! stretch of 30 m about that place. Every planner begins with the same belief. After each of the last 120 motions the front that is
+//! stretch of 30 m about that place. No planner is told how the front bends. After each of the last 120 motions the front that is
 //! stated is compared with the true one at seven places of the stretch.
 
 use host_sim::campaign::fronts::flight::{sea, vehicle};
@@ -10,8 +10,7 @@ use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use nalgebra::{Point2, Vector2};
 use planner_core::planner::scout::LOOKED_AT;
 use planner_core::{
-    Area, Front, FrontStretch, Guard, Label, Noise, Persist as _, Plan, Planner as _, Pose,
-    Tracker, Unicycle,
+    Front, FrontStretch, Guard, Label, Noise, Persist as _, Plan, Planner as _, Pose, Unicycle,
 };
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -25,7 +24,7 @@ const SETTLED: u32 = 30;
 /// The length of the stretch, metres.
 const STRETCH: f64 = 30.0;
 
-type Belief = Tracker<16, 16, 3>;
+type Watcher = Guard<Unicycle>;
 
 #[derive(Clone, Copy, Debug)]
 struct World {
@@ -66,10 +65,10 @@ fn truth(front: &TrueFront, middle: Pose, ahead: f64, motion: f64) -> f64 {
 }
 
 /// How far what is stated is off at seven places, metres, and whether the stated width covers that.
-fn measure(front: &TrueFront, belief: &Belief, middle: Pose, motion: u32) -> [(f64, bool); 7] {
+fn measure(front: &TrueFront, planner: &Watcher, middle: Pose, motion: u32) -> [(f64, bool); 7] {
     [-3, -2, -1, 0, 1, 2, 3].map(|k| {
         let ahead = f64::from(k) * STRETCH / 6.0;
-        let stated = belief.beside(site(place(middle, ahead, 0.0)), middle.heading);
+        let stated = planner.beside(site(place(middle, ahead, 0.0)), middle.heading);
         let off = (f64::from(stated.left) - truth(front, middle, ahead, motion.into())).abs();
         (off, off <= 1.645 * f64::from(stated.deviation))
     })
@@ -79,21 +78,20 @@ fn measure(front: &TrueFront, belief: &Belief, middle: Pose, motion: u32) -> [(f
 struct Watching {
     front: TrueFront,
     p: f64,
-    planner: Guard<Unicycle, 16, 16, 3>,
+    planner: Watcher,
     pose: Pose,
     middle: Pose,
     motion: u32,
     rng: ChaCha8Rng,
 }
 
-/// Four points are given, and the front lies within 10 m of its place.
-fn guard(front: &TrueFront, world: World, stretch: FrontStretch) -> Guard<Unicycle, 16, 16, 3> {
-    let told = Front::bending(100.0).and_then(|it| it.moving(world.speed)).expect("a front");
-    let [x, z] = front.place.into();
-    let near = Area::metres([x - 10.0, z - 10.0], [x + 10.0, z + 10.0]).expect("an area");
-    let belief: Belief = Tracker::new(near, told, Noise::new(world.p).expect("p"));
+/// Four points are given.
+fn guard(front: &TrueFront, world: World, stretch: FrontStretch) -> Watcher {
+    let told = Front::STRAIGHT.moving(world.speed).expect("a front");
     let (sea, unicycle) = (sea().expect("an area"), vehicle(REACH).expect("a vehicle"));
-    Guard::new(sea, unicycle, belief.given(&front.given()), stretch).expect("room")
+    let noise = Noise::new(world.p).expect("p");
+    let guard = Guard::watching(sea, unicycle, (told, stretch), noise).expect("room");
+    guard.knowing(&front.given())
 }
 
 impl Watching {
@@ -129,27 +127,28 @@ impl Watching {
     }
 }
 
-/// Whether the front is a circle, its speed, how often labels are true; the most that the median of the mean deviation
-/// may be, metres; and the mean deviation of a robot that goes to and fro along the stretch, with the same belief.
-const WORLDS: [(bool, f64, f64, f64, f64); 8] = [
-    (false, 0.05, 1.0, 0.11, 0.192),
-    (false, 0.05, 0.9, 0.24, 0.252),
-    (true, 0.05, 1.0, 0.096, 0.134),
-    (true, 0.05, 0.9, 0.2048, 0.222),
-    (false, 0.0, 1.0, 0.041, 0.051),
-    (false, 0.0, 0.9, 0.108, 0.106),
-    (true, 0.0, 1.0, 0.032, 0.038),
-    (true, 0.0, 0.9, 0.093, 0.094),
+/// Whether the front is a circle, its speed, how often labels are true; and the most that the median of the mean deviation
+/// may be, metres. A grid of curves that was told the circle's radius had 0.102, 0.218, 0.088, 0.192, 0.037, 0.102, 0.030 and
+/// 0.084.
+const WORLDS: [(bool, f64, f64, f64); 8] = [
+    (false, 0.05, 1.0, 0.052),
+    (false, 0.05, 0.9, 0.165),
+    (true, 0.05, 1.0, 0.067),
+    (true, 0.05, 0.9, 0.192),
+    (false, 0.0, 1.0, 0.0093),
+    (false, 0.0, 0.9, 0.076),
+    (true, 0.0, 1.0, 0.0116),
+    (true, 0.0, 0.9, 0.084),
 ];
 
-/// In every world the median of the mean deviation is small. As a mean over all worlds the deviation is smaller by 13 %
-/// and more than that of going to and fro. A quick run flies half of the worlds.
+/// In every world the median of the mean deviation is small, and the stated widths hold. A quick run flies half of the
+/// worlds.
 #[test]
-fn a_watched_stretch_is_known_better_than_by_other_ways() {
+fn a_watched_stretch_is_known_all_along() {
     let worlds =
         if is_long() { &WORLDS[..] } else { &[WORLDS[1], WORLDS[3], WORLDS[4], WORLDS[6]] };
     let slack = if is_long() { 1.0 } else { 1.1 };
-    let means = worlds.iter().map(|&(is_circle, speed, p, most, to_and_fro)| {
+    for &(is_circle, speed, p, most) in worlds {
         let world = World { is_circle, speed, p };
         let of_each = ensemble::fly(cases(50, 100), |number| {
             let mut it = Watching::begin(SEED, number, world, STRETCH);
@@ -157,7 +156,7 @@ fn a_watched_stretch_is_known_better_than_by_other_ways() {
             while it.motion < begun + MOTIONS {
                 it.go();
                 if it.motion > begun + SETTLED {
-                    measured.extend(measure(&it.front, it.planner.belief(), it.middle, it.motion));
+                    measured.extend(measure(&it.front, &it.planner, it.middle, it.motion));
                 }
             }
             let covered = mean(measured.iter().map(|it| f64::from(u8::from(it.1))));
@@ -165,13 +164,6 @@ fn a_watched_stretch_is_known_better_than_by_other_ways() {
         });
         expect(format!("{world:?}, off"), median(of_each.iter().map(|it| it.0)), ..=slack * most);
         expect(format!("{world:?}, covered"), mean(of_each.iter().map(|it| it.1)), 0.9..);
-        let off = mean(of_each.iter().map(|it| it.0));
-        (off, off / to_and_fro)
-    });
-    let means: Vec<_> = means.collect();
-    if is_long() {
-        expect("mean", mean(means.iter().map(|it| it.0)), ..0.12);
-        expect("of that of going to and fro", mean(means.iter().map(|it| it.1)), ..0.87);
     }
 }
 

@@ -4,7 +4,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, Tracker, UnknownReliability,
+    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, UnknownReliability,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -28,11 +28,8 @@ pub const HYPOTHESES: usize = 2081;
 /// The hypothesis table of simulated planners.
 pub type Table = CellPosterior<CAPACITY, HYPOTHESES, 15, AnyReliability>;
 
-/// The belief of simulated planners that watch a front.
-pub type FrontBelief = Tracker<16, 16, 3>;
-
 /// The belief of simulated planners that seek a line from nothing.
-pub type SoughtLine = Tracker<16, 16, 1>;
+pub type SoughtLine = planner_core::Lines<16, 16>;
 
 /// The belief of simulated look-ahead in noise.
 pub type DoubtfulBelief = NoisyBelief<CAPACITY, HYPOTHESES, AnyReliability>;

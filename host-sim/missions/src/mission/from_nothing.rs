@@ -5,8 +5,8 @@ use planner_core::error::ObservationError;
 use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
-    Belief as _, Front, FrontState, OneLabel, Plan, Planner, Pose, Reading, Sample, Seek, Site,
-    StopReason, Tolerance, Tracker, VersionSpace, Workspace as _, aimed_for,
+    Belief as _, FrontState, Lines, OneLabel, Plan, Planner, Pose, Reading, Sample, Seek, Site,
+    StopReason, Tolerance, VersionSpace, Workspace as _, aimed_for,
 };
 use serde::{Deserialize, Serialize};
 
@@ -32,7 +32,7 @@ impl Mission {
     /// What is known of a line that is sought from nothing, before the first label.
     pub fn sought(&self) -> SoughtLine {
         let bounds = self.config.area.bounds();
-        Tracker::new(bounds, Front::STRAIGHT, self.noise_told()).given(self.given.samples())
+        Lines::new(bounds, self.noise_told()).given(self.given.samples())
     }
 
     /// What labels all over its area say, if it most likely has one label.
@@ -49,8 +49,8 @@ impl Mission {
     /// When settings contradict each other.
     pub fn seek<D: Dynamics>(&self, dynamics: D) -> Seek<D, 16, 16, MissionArea> {
         let bounds = self.config.area.bounds();
-        let tracker = Tracker::new(bounds, Front::STRAIGHT, self.noise_told());
-        let seek = Seek::new(self.config.area, dynamics, tracker).expect("room for the vehicle");
+        let lines = Lines::new(bounds, self.noise_told());
+        let seek = Seek::new(self.config.area, dynamics, lines).expect("room for the vehicle");
         let seek = match self.asking.price {
             Some(price) => seek.at_price(price).expect("a price that was checked"),
             None => seek,

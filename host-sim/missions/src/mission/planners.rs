@@ -7,7 +7,7 @@ use planner_core::watch::Alarm;
 use planner_core::{
     Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState,
     FrontStretch, Guard, Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc,
-    Site, Tolerance, Track, Tracker, Trust, Workspace,
+    Site, Tolerance, Track, Trust, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -92,12 +92,9 @@ impl Mission {
     /// As [`planner`](Self::planner).
     pub fn belief(&self) -> Box<dyn ReadOut> {
         match () {
-            () if !self.algorithm.seeks_line() => match self.watch {
-                Some(metres) => {
-                    Box::new(self.guard(self.config.area, self.vehicle, metres).belief().clone())
-                }
-                None => Box::new(self.track(self.config.area, self.vehicle).belief().clone()),
-            },
+            () if !self.algorithm.seeks_line() => {
+                Box::new(self.track(self.config.area, self.vehicle).belief().clone())
+            }
             () if self.begins_from_nothing() => Box::new(self.sought()),
             () if self.is_noisy() => Box::new(self.table()),
             () => Box::new(self.lines()),
@@ -167,20 +164,17 @@ impl Mission {
         area: G,
         dynamics: D,
         metres: f64,
-    ) -> Guard<D, 16, 16, 3, G> {
-        let tracker = Tracker::new(area.bounds(), self.front, self.noise_told());
+    ) -> Guard<D, G> {
         let stretch = FrontStretch::metres(metres).expect("a length that was checked");
-        let guard = Guard::new(area, dynamics, tracker, stretch).expect(FITS);
+        let told = (self.front, stretch);
+        let guard = Guard::watching(area, dynamics, told, self.noise_told()).expect(FITS);
         guard.seeking(self.seeking).expect(FITS).knowing(self.given.samples())
     }
 
     /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.
     pub fn found_width(&self) -> Option<f32> {
         let (area, vehicle) = (self.config.area, self.vehicle);
-        (!self.algorithm.seeks_line()).then(|| match self.watch {
-            Some(metres) => self.guard(area, vehicle, metres).width(),
-            None => self.track(area, vehicle).width(),
-        })
+        (!self.algorithm.seeks_line()).then(|| self.track(area, vehicle).width())
     }
 
     /// Algorithm 1 with the mission's settings, in an area and with a vehicle that may be others than its own.

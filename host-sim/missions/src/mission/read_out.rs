@@ -1,15 +1,14 @@
 //! What reports and campaigns read of a belief, beside what every planner asks of it.
 
-use std::any::Any;
 use std::fmt::Debug;
 
 use planner_core::belief::front::Waist;
 use planner_core::{
     AnyReliability, Area, Belief, Curve, Goal, Label, MapPlace, Planner, PosteriorView,
-    Reliability, Sample, Site, Tolerance, Tracker,
+    Reliability, Sample, Site, Tolerance,
 };
 
-use crate::mission::definition::{FrontBelief, SoughtLine, Table};
+use crate::mission::definition::{SoughtLine, Table};
 use crate::mission::given::Lines;
 use crate::world::noise::limit;
 
@@ -83,7 +82,7 @@ pub trait ReadOut: Belief + Debug + Send {
     }
 
     /// The front, where one is followed.
-    fn front(&self) -> Option<&dyn FrontKnown> {
+    fn front(&self) -> Option<&Curve> {
         None
     }
 
@@ -101,56 +100,11 @@ pub trait ReadOut: Belief + Debug + Send {
     fn boxed(&self) -> Box<dyn ReadOut>;
 }
 
-/// What is known of a front that is followed or watched.
-pub trait FrontKnown {
-    /// Whether labels say nothing against what was told: there may be no front.
-    fn may_be_nowhere(&self) -> bool;
-
-    /// Where it is known now, if its half-width is below so many metres.
-    fn found(&self, within: f32) -> Option<Waist>;
-
-    /// Places that the last motion adds to the map, if that is found within so many metres.
-    fn mapped(&self, within: f32) -> Vec<MapPlace>;
-
-    /// Places that the map has more when the mission ends.
-    fn rest(&self) -> Vec<MapPlace> {
-        Vec::new()
-    }
-}
-
-impl FrontKnown for FrontBelief {
-    fn may_be_nowhere(&self) -> bool {
-        Self::may_be_nowhere(self)
-    }
-
-    fn found(&self, within: f32) -> Option<Waist> {
-        Self::found(self, within)
-    }
-
-    fn mapped(&self, within: f32) -> Vec<MapPlace> {
-        let place = |waist| MapPlace { waist, age: 0.0, begins: false };
-        Self::found(self, within).map(place).into_iter().collect()
-    }
-}
-
-impl FrontKnown for Curve {
-    fn may_be_nowhere(&self) -> bool {
-        !self.is_begun()
-    }
-
-    fn found(&self, within: f32) -> Option<Waist> {
-        Self::found(self, within)
-    }
-
-    fn mapped(&self, _: f32) -> Vec<MapPlace> {
-        Self::mapped(self).to_vec()
-    }
-
-    fn rest(&self) -> Vec<MapPlace> {
-        let mut rest: Vec<_> = self.places().collect();
-        rest.reverse();
-        rest
-    }
+/// Places that the map of a front has more when the mission ends, the oldest first.
+pub fn rest(front: &Curve) -> Vec<MapPlace> {
+    let mut rest: Vec<_> = front.places().collect();
+    rest.reverse();
+    rest
 }
 
 impl ReadOut for Curve {
@@ -178,7 +132,7 @@ impl ReadOut for Curve {
         &[]
     }
 
-    fn front(&self) -> Option<&dyn FrontKnown> {
+    fn front(&self) -> Option<&Curve> {
         Some(self)
     }
 
@@ -222,7 +176,7 @@ impl ReadOut for Lines {
     }
 }
 
-impl<const L: usize> ReadOut for Tracker<16, 16, L> {
+impl ReadOut for SoughtLine {
     fn knowledge(&self) -> Knowledge {
         let slopes = || {
             let Waist { heading, turn_deviation, .. } = self.waist();
@@ -248,12 +202,8 @@ impl<const L: usize> ReadOut for Tracker<16, 16, L> {
         &[]
     }
 
-    fn front(&self) -> Option<&dyn FrontKnown> {
-        (self as &dyn Any).downcast_ref::<FrontBelief>().map(|it| it as &dyn FrontKnown)
-    }
-
     fn sought(&self) -> Option<&SoughtLine> {
-        (self as &dyn Any).downcast_ref()
+        Some(self)
     }
 
     fn boxed(&self) -> Box<dyn ReadOut> {

@@ -19,7 +19,7 @@ use crate::mission::from_nothing::SeekRecord;
 use crate::mission::front::{FrontTable, PassedRecord, VertexRecord};
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::map::MapRecord;
-use crate::mission::read_out::{FrontKnown, Knowledge, LEVEL, ReadOut, is_unknown};
+use crate::mission::read_out::{Knowledge, LEVEL, ReadOut, is_unknown, rest};
 use crate::mission::results::{
     AlarmRecord, BestRecord, CredibleRecord, End, Ending, EstimateRecords, FitRecord,
     KeepOutRecord, LineError, PTold, ReadingRecord, ReliabilityRecord, Results, Start, StepResult,
@@ -165,7 +165,7 @@ impl Recorder {
 
     /// Takes down what a label says against the model, where it says anything.
     fn hear(&mut self, known: &dyn ReadOut, site: Site, reading: Reading) {
-        let front = known.front().map(FrontKnown::may_be_nowhere);
+        let front = known.front().map(|it| !it.is_begun());
         let may_be_nowhere = front.or_else(|| known.sought().map(SoughtLine::may_be_nowhere));
         if let (Reading::Side(label), None | Some(false)) = (reading, may_be_nowhere) {
             self.evidence.observe(label, known.chance_of(site, label));
@@ -179,10 +179,8 @@ impl Recorder {
 
     /// The places that the map has more, if a front is followed.
     fn mapped(&self, belief: &dyn ReadOut) -> Vec<PassedRecord> {
-        let front = belief.front().filter(|_| self.mission.watch.is_none());
-        let mapped = front.zip(self.width).map(|(it, width)| it.mapped(width));
-        let step = self.steps.len();
-        mapped.into_iter().flatten().map(|it| PassedRecord::of(it, step)).collect()
+        let (mapped, step) = (belief.front().map_or(&[][..], |it| it.mapped()), self.steps.len());
+        mapped.iter().map(|it| PassedRecord::of(*it, step)).collect()
     }
 
     /// What a perfect sensor reads at a pose at the end of the current step, if the boundary is known.
@@ -233,7 +231,7 @@ impl Recorder {
     /// The mission is over.
     pub fn end(self, Flown { ending, belief }: Flown) -> Recording {
         let Self { mission, steps, results, before, alarm, .. } = self;
-        let rest = belief.front().map(FrontKnown::rest).unwrap_or_default();
+        let rest = belief.front().map(rest).unwrap_or_default();
         let rest: Vec<_> = rest.into_iter().map(|it| PassedRecord::of(it, steps.len())).collect();
         let doubted = belief.hypotheses().and_then(|table| doubted(table, &mission.world));
         let (best, credible) = doubted.unzip();

@@ -55,8 +55,8 @@ impl Results {
     }
 }
 
-/// What the map has of a mission's steps, and of the places at its end. A planner that follows a front says what the map has;
-/// of one that watches it, that is where the front is.
+/// What the map has of a mission's steps, and of the places at its end. Where nobody has said what the map has, that is where
+/// the front was beside the robot.
 pub fn mapped(steps: &[StepResult], rest: &[PassedRecord]) -> Vec<Mapped> {
     let follows = !rest.is_empty() || steps.iter().any(|it| !it.mapped.is_empty());
     let of_step = |it: &StepResult| Mapped {

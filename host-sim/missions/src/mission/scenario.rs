@@ -319,8 +319,8 @@ impl File {
         all.extend(self.doubted_slope(area));
         all.extend(doubts::of_area(area, vehicle)?);
         let front = self.front.as_ref().map(|it| it.0).unwrap_or_default();
-        if front.radius.is_some_and(f64::is_finite) && front.watch.is_none() {
-            all.push("front.radius: no effect without front.watch: the planner learns how the front bends".to_owned());
+        if front.radius.is_some_and(f64::is_finite) {
+            all.push("front.radius: no effect: the planner learns how the front bends".to_owned());
         }
         let p = self.noise.as_ref().map_or(1.0, |it| it.0.mean());
         if p < 1.0 && algorithm.seeks_line() && !algorithm.weighs(true) {

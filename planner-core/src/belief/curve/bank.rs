@@ -98,6 +98,11 @@ impl Bank {
         self.of.iter_mut().flatten().for_each(|it| it.widen(variance));
     }
 
+    /// Seen the other way round. Adds to the variance of the turn.
+    pub(crate) fn turn_round(&mut self, turns: f32) {
+        self.of.iter_mut().flatten().for_each(|it| it.turn_round(turns));
+    }
+
     /// Lets a share of the mass leave its gait on a way, and come back into each.
     #[inline(never)] // what it needs is not on the stack of all that observes
     pub(crate) fn mix(&mut self, way: f32) {

@@ -239,6 +239,17 @@ impl Curve {
         self.set(Arc { site: waist.site, heading, bend }, deviations);
     }
 
+    /// The robot turns round, and goes back along the front. A steady motion shows as a turn to the other side from now on.
+    pub(crate) fn turn_round(&mut self) {
+        self.drop_all();
+        self.is_flipped = !self.is_flipped;
+        let Arc { site, heading, bend } = self.arc;
+        self.arc = Arc { site, heading: heading.turned(Angle::HALF_TURN), bend: -bend };
+        let turns = 2.0 * DRIFTS * self.pace / self.reach;
+        self.bank.turn_round(turns * turns);
+        (self.since, self.is_fresh) = (0.0, true);
+    }
+
     fn set(&mut self, arc: Arc, deviations: [f32; 2]) {
         self.arc = arc;
         self.bank.begin(deviations);
@@ -254,10 +265,14 @@ impl Curve {
 
     /// The robot leaves the front. What it has passed is on the map.
     pub(crate) fn leave(&mut self) {
+        self.drop_all();
+        self.is_begun = false;
+    }
+
+    fn drop_all(&mut self) {
         while !self.passed.is_empty() {
             self.drop_last();
         }
-        self.is_begun = false;
     }
 
     /// There is no such front: the last places are not on the map.

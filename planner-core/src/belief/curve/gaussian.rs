@@ -216,6 +216,14 @@ impl Gaussian {
         self.behind[0] = [0.0, 0.0, ROUGH * ROUGH];
     }
 
+    /// Seen the other way round: left is right. Adds to the variance of the turn.
+    pub(crate) fn turn_round(&mut self, turns: f32) {
+        self.mean = -self.mean;
+        self.means[1] = -self.means[1];
+        self.gain[0] = -self.gain[0];
+        self.rest = [self.rest[0] + turns, -self.rest[1], self.rest[2]];
+    }
+
     /// Its offset.
     pub(crate) const fn offset(&self) -> Offset {
         Offset { weight: self.weight, mean: self.mean, variance: self.variance }

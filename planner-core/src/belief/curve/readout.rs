@@ -22,8 +22,8 @@ const MISFIT: f32 = 0.02;
 const OBLIQUE: f32 = 0.2;
 
 impl Curve {
-    /// The front on an arc: what is known of its offset, its turn, the deviation of that, and of how far it has moved.
-    fn waist(&self, arc: Arc, offsets: &Offsets, [turn, turns, moved]: [f32; 3]) -> Waist {
+    /// The front on an arc: what is known of its offset, its turn, and the deviation of that.
+    fn waist(&self, arc: Arc, offsets: &Offsets, [turn, turns]: [f32; 2]) -> Waist {
         let middle = offsets.mean();
         let half = offsets.half_width(middle, 0.9) * self.reach / NINETY;
         let curvature = if self.is_flipped { -arc.bend } else { arc.bend };
@@ -31,24 +31,31 @@ impl Curve {
             site: arc.site_at(0.0, middle * self.reach),
             heading: self.along(arc.heading.turned(angle(turn))),
             curvature,
-            deviation: sqrt(half * half + moved * moved),
+            deviation: half,
             turn_deviation: turns,
         }
     }
 
     /// The front at a place behind, the last one first.
     pub(super) fn place(&self, number: usize) -> Option<MapPlace> {
+        let MapPlace { waist, age, begins } = self.place_then(number)?;
+        let moved = DRIFTS * self.pace * age;
+        let deviation = sqrt(waist.deviation * waist.deviation + moved * moved);
+        Some(MapPlace { waist: Waist { deviation, ..waist }, age, begins })
+    }
+
+    /// The same, but where the front was when the robot passed it.
+    fn place_then(&self, number: usize) -> Option<MapPlace> {
         let Passed { arc, age, begins } = self.passed.iter().nth(number)?;
         let [_, _, turns] = self.bank.direction();
-        let moved = DRIFTS * self.pace * age;
-        let waist = self.waist(*arc, &self.bank.behind(number), [0.0, turns, moved]);
+        let waist = self.waist(*arc, &self.bank.behind(number), [0.0, turns]);
         Some(MapPlace { waist, age: *age, begins: *begins })
     }
 
     /// The front beside the robot.
     pub fn now(&self) -> Waist {
         let [turn, _, turns] = self.bank.direction();
-        self.waist(self.arc, &self.bank.ahead(0.0, 0.0), [turn, turns, 0.0])
+        self.waist(self.arc, &self.bank.ahead(0.0, 0.0), [turn, turns])
     }
 
     /// Places that the map has now: no label changes them any more. The oldest first, and the last few since they were
@@ -72,6 +79,11 @@ impl Curve {
     pub fn places(&self) -> impl Iterator<Item = MapPlace> {
         let places = (0..self.passed.len()).filter_map(|number| self.place(number));
         places.filter(|it| self.counts(&it.waist))
+    }
+
+    /// The same, but where the front was when the robot passed them.
+    pub(crate) fn places_then(&self) -> impl Iterator<Item = MapPlace> {
+        (0..self.passed.len()).filter_map(|number| self.place_then(number))
     }
 
     /// Where the front crosses the line through a site that is square to a heading, on average, and how well that is

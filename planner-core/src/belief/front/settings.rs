@@ -1,14 +1,14 @@
-//! What a user says of a front: how tightly it bends, how fast it moves, and how much of it is to be watched.
+//! What a user says of a front: whether it bends, how fast it moves, and how much of it is to be watched.
 
 use crate::geometry::value::ValueError;
 
-/// How tightly a front bends, and how fast it moves.
+/// Whether a front bends, and how fast it moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(try_from = "[u32; 2]", into = "[u32; 2]"))]
 pub struct Front {
-    /// The radius of the tightest bend, millimetres; 0 if it is straight.
+    /// A radius, millimetres; 0 if it is straight. No other counts.
     radius_mm: u32,
     /// How far it moves in a unit of time at most, micrometres.
     speed_um: u32,
@@ -18,11 +18,10 @@ impl Front {
     /// Straight and still.
     pub const STRAIGHT: Self = Self { radius_mm: 0, speed_um: 0 };
 
-    /// It bends, nobody knows how, and is still. For [`Track`](crate::Track): a [`Tracker`](crate::Tracker) takes it for
-    /// one that bends by 20 m.
+    /// It bends, nobody knows how, and is still.
     pub const BENDING: Self = Self { radius_mm: 20_000, speed_um: 0 };
 
-    /// The tightest bend has a radius of so many metres. If in doubt, name a smaller one.
+    /// It bends, with a radius of so many metres. Any will do: planners learn how it bends.
     ///
     /// # Errors
     /// [`ValueError`] unless it is from 0.1 to 1,000,000 m.
@@ -46,12 +45,7 @@ impl Front {
         is_speed.then_some(Self { speed_um, ..self }).ok_or(RANGE)
     }
 
-    /// The same, but it moves as fast as another one.
-    pub(crate) const fn as_fast_as(self, other: Self) -> Self {
-        Self { speed_um: other.speed_um, ..self }
-    }
-
-    /// The radius of the tightest bend, metres; `None` if it is straight.
+    /// The radius that was named, metres; `None` if it is straight.
     pub fn radius(self) -> Option<f64> {
         (self.radius_mm > 0).then(|| f64::from(self.radius_mm) / 1e3)
     }
@@ -59,11 +53,6 @@ impl Front {
     /// How far it moves in a unit of time, metres.
     pub fn speed(self) -> f64 {
         f64::from(self.speed_um) / 1e6
-    }
-
-    /// The curvature of the tightest bend, 1/m.
-    pub(crate) fn bend(self) -> f32 {
-        if self.radius_mm > 0 { 1e3 / self.radius_mm as f32 } else { 0.0 }
     }
 
     /// The speed in single precision, metres in a unit of time.
@@ -167,6 +156,6 @@ mod tests {
             assert_eq!([read.0.to_bits(), read.1.to_bits()], [radius, speed].map(f64::to_bits));
         }
         assert_eq!(Front::STRAIGHT.moving(0.05).unwrap().speed().to_bits(), 0.05f64.to_bits());
-        assert_eq!((Front::STRAIGHT.radius(), Front::STRAIGHT.bend()), (None, 0.0));
+        assert_eq!(Front::STRAIGHT.radius(), None);
     }
 }

@@ -1,8 +1,6 @@
 //! Where a front is known best.
 
-use crate::belief::front::lay::{Unit, angle, limited, metres};
-use crate::belief::front::moments::Moments;
-use crate::belief::front::tracker::{ABSENT, Tracker};
+use crate::belief::front::plane::{Unit, angle, metres};
 use crate::geometry::approximate::sqrt;
 use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
@@ -22,6 +20,15 @@ pub struct Waist {
     pub deviation: f32,
     /// The standard deviation of the direction, radians.
     pub turn_deviation: f32,
+}
+
+/// Where a front crosses a line that is square to a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// How far to the left of the place, on average, metres.
+    pub left: f32,
+    /// The standard deviation, metres.
+    pub deviation: f32,
 }
 
 impl Waist {
@@ -60,47 +67,12 @@ impl Waist {
         let [x, z] = [x, z].map(|it| (it * ahead * UNITS_PER_METRE as f32) as i32);
         self.site.step(Vector::new(x, z)?).ok()
     }
-}
 
-/// A front is found where its direction has a deviation below this, radians.
-const DIRECTED: f32 = 0.5;
-
-impl<const K: usize, const M: usize, const L: usize> Tracker<K, M, L> {
-    /// Where the front is known best. Of no meaning before it is found.
-    pub fn waist(&self) -> Waist {
-        let moments = Moments::of(&self.grid);
-        let lay = self.grid.lay;
-        let heading = moments.heading(&self.grid);
-        let [turns, offsets] = moments.variance;
-        let slope = moments.covariance / turns;
-        let most = if lay.bend > 0.0 { 0.5 / lay.bend } else { 2_048.0 };
-        let ahead = limited(-slope * lay.step / lay.turn, most);
-        let left = lay.low + lay.step * (moments.mean[1] + 0.5 * M as f32);
-        let left = left + lay.bulge(moments.bend, ahead);
-        let along = Unit::of(heading);
-        let units = UNITS_PER_METRE as f32;
-        let x = (along.x * ahead - along.z * left) * units;
-        let z = (along.z * ahead + along.x * left) * units;
-        let by = Vector::new(x as i32, z as i32).unwrap_or_default();
-        let variance = offsets - slope * moments.covariance;
-        Waist {
-            site: lay.pivot.step(by).unwrap_or(lay.pivot),
-            heading: heading.turned(angle((moments.bend * ahead).clamp(-1.0, 1.0))),
-            curvature: moments.bend,
-            deviation: lay.step * sqrt(variance),
-            turn_deviation: lay.turn * sqrt(turns),
-        }
-    }
-
-    /// Where the front is known best, if it is found. There it lies within so many metres with 90 %, and its direction
-    /// has a deviation below half a radian. With 95 % there is a front.
-    pub fn found(&self, within: f32) -> Option<Waist> {
-        if self.is_open() || self.share_nowhere() > ABSENT {
-            return None;
-        }
-        let waist = self.waist();
-        let is_near = waist.ninety() <= within;
-        (is_near && waist.turn_deviation < DIRECTED).then_some(waist)
+    /// The standard deviation of the front beside a site, metres: that of its direction counts by the distance.
+    pub(crate) fn deviation_beside(&self, site: Site) -> f32 {
+        let [x, z] = metres(site - self.site);
+        let square = (x * x + z * z) * self.turn_deviation * self.turn_deviation;
+        sqrt(self.deviation * self.deviation + square)
     }
 }
 

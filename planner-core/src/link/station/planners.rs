@@ -57,15 +57,13 @@ pub struct TrueLabels<const N: usize, C = Accuracy, S = Near>(PhantomData<(C, S)
 #[derive(Debug)]
 pub struct AllLabels<const T: usize, const N: usize, const H: usize, S = Near>(PhantomData<S>);
 
-/// The follower of fronts, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and the
-/// planners of `A`: by default none.
+/// The follower of fronts, and the planners of `A`: by default none.
 #[derive(Debug)]
 pub struct Tracks<A = NoOthers>(PhantomData<A>);
 
-/// The guard of a stretch of a front, by a [`Tracker`](crate::Tracker) of `K` directions, `M` offsets and `L` layers, and
-/// the planners of `A`: by default none.
+/// The guard of a stretch of a front, and the planners of `A`: by default none.
 #[derive(Debug)]
-pub struct Guards<const K: usize, const M: usize, const L: usize, A = NoOthers>(PhantomData<A>);
+pub struct Guards<A = NoOthers>(PhantomData<A>);
 
 /// No planner.
 #[derive(Debug)]
@@ -244,7 +242,7 @@ impl<A: Planners> Planners for Tracks<A> {
     }
 }
 
-impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for Guards<K, M, L, A> {
+impl<A: Planners> Planners for Guards<A> {
     fn fly<P: Port, S: LabelSensor, D: Dynamics, G: Workspace, W: Watch>(
         mission: Mission<'_, P, S, W>,
         terms: PlannerSetup<D, G>,
@@ -252,7 +250,7 @@ impl<const K: usize, const M: usize, const L: usize, A: Planners> Planners for G
         let Mission { station, setup, watch } = mission;
         match setup.algorithm {
             Algorithm::Watch { front, noise, stretch } => {
-                let mut planner = setup.guard::<_, _, K, M, L>(terms, front, stretch);
+                let mut planner = setup.guard(terms, front, stretch);
                 station.fly(setup, &mut setup.prepare(&mut planner, Prior::Area, noise), watch)
             }
             _ => A::fly(Mission { station, setup, watch }, terms),

@@ -4,7 +4,7 @@
 use crate::belief::ObservationError;
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::estimate::Estimates;
-use crate::belief::front::{Front, FrontStretch, Tracker};
+use crate::belief::front::{Front, FrontStretch};
 use crate::belief::goal::{Accuracy, Criterion, Goal};
 use crate::belief::noise::Noise;
 use crate::belief::predictions::NoisyBelief;
@@ -18,12 +18,11 @@ use crate::link::station::terms::{Known, PlannerSetup};
 use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
-use crate::planner::guard::Guard;
 use crate::planner::lookahead::Lookahead;
 use crate::planner::scc::{Policy, Scc};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::sight::{AnySight, Sight};
-use crate::planner::track::Track;
+use crate::planner::track::{Guard, Track};
 use crate::planner::{Plan, Planner};
 use crate::robot::Hearing;
 
@@ -191,13 +190,13 @@ impl Setup {
 
     /// The guard of a stretch of a front for this mission, with none of its samples yet: the memory for
     /// [`prepare`](Self::prepare).
-    pub fn guard<D: Dynamics, G: Workspace, const K: usize, const M: usize, const L: usize>(
+    pub fn guard<D: Dynamics, G: Workspace>(
         &self,
         PlannerSetup { dynamics, area, .. }: PlannerSetup<D, G>,
         front: Front,
         stretch: FrontStretch,
-    ) -> Guard<D, K, M, L, G> {
-        Guard::of((area, dynamics), Tracker::blank(front), stretch)
+    ) -> Guard<D, G> {
+        Guard::guard_of((area, dynamics), front, stretch)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![forbid(unsafe_code)]
-//! The follower of fronts, by a tracker of 16 directions, 16 offsets and 3 layers of curvature.
+//! The follower of fronts.
 
 #[cfg(target_os = "none")]
 #[bare_core::entry]

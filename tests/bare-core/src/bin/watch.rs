@@ -1,6 +1,6 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![forbid(unsafe_code)]
-//! The guard of a stretch of a front, by a tracker of 16 directions, 16 offsets and 3 layers of curvature.
+//! The guard of a stretch of a front.
 
 #[cfg(target_os = "none")]
 #[bare_core::entry]
@@ -8,7 +8,7 @@ fn main() -> ! {
     use planner_core::link::station::Guards;
     use planner_core::{Area, Unicycle};
 
-    bare_core::fly::<Guards<16, 16, 3>, Unicycle, Area>()
+    bare_core::fly::<Guards, Unicycle, Area>()
 }
 
 /// On a host there is nothing to run.

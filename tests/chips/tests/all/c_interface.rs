@@ -10,10 +10,9 @@ use chips::program;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Angle, Area, Belief as _, Beside, Curve, Front, FrontStretch, Goal, Guard, Heading, Hull,
-    KeepOut, Label, Line, Lookahead, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose,
-    PredictiveBelief, Reliability, Sample, Site, SlopeWithin, StopReason, Tolerance, Track,
-    Tracker, Unicycle, VersionSpace,
+    Angle, Area, Belief as _, Front, FrontStretch, Goal, Guard, Heading, Hull, KeepOut, Label,
+    Line, Lookahead, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief,
+    Reliability, Sample, Site, SlopeWithin, StopReason, Tolerance, Track, Unicycle, VersionSpace,
 };
 use tests::build::{has_tool, scratch, skip};
 use tests::is_updating;
@@ -220,18 +219,14 @@ fn followed() -> [String; 2] {
     let noise = Noise::new(0.9).expect("a probability");
     let given = [(60.0, 10.0, Label::Negative), (60.0, 50.0, Label::Positive)];
     let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
-    let tracker = Tracker::<16, 16, 3>::new(area, front, noise);
     let unicycle = Unicycle::new(10_000, 1.57, 21, 100).expect("a grid");
     let track = Track::new(area, unicycle, front, noise).expect("settings that agree");
     let stretch = FrontStretch::metres(20.0).expect("a stretch");
-    let guard = Guard::new(area, unicycle, tracker, stretch).expect("settings that agree");
-    [
-        along(track.knowing(&given), Curve::beside),
-        along(guard.knowing(&given), Tracker::<16, 16, 3>::beside),
-    ]
+    let guard = Guard::watching(area, unicycle, (front, stretch), noise).expect("room");
+    [along(track.knowing(&given)), along(guard.knowing(&given))]
 }
 
-fn along<P: Planner>(mut planner: P, beside: fn(&P::Belief, Site, Heading) -> Beside) -> String {
+fn along<const N: usize>(mut planner: Track<Unicycle, Area, N>) -> String {
     let mut pose = Pose { site: at(60.0, 28.0), heading: Heading(0) };
     let (mut labels, mut said) = (0, String::new());
     for _ in 0..130 {
@@ -252,7 +247,7 @@ fn along<P: Planner>(mut planner: P, beside: fn(&P::Belief, Site, Heading) -> Be
             let rest = [it.curvature, it.deviation, it.turn_deviation].map(f64::from);
             numbers.extend([at.x, at.y, it.heading.radians()].into_iter().chain(rest));
             numbers.push(f64::from(u8::from(front.is_closed)));
-            let beside = beside(planner.belief(), pose.site, pose.heading);
+            let beside = planner.beside(pose.site, pose.heading);
             numbers.extend([beside.left, beside.deviation].map(f64::from));
         }
         for number in numbers {
