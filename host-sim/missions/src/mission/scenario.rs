@@ -338,6 +338,14 @@ impl File {
         doubts::of_slope(&(*area).into(), base?)
     }
 
+    /// Given points, or why they are refused, with what may be wrong with the truth.
+    fn doubting<T>(&self, area: &MissionArea, given: Result<T>) -> Result<T> {
+        given.map_err(|error| match self.doubted_slope(area) {
+            Some(doubt) => anyhow!("{error} ({doubt})"),
+            None => error,
+        })
+    }
+
     /// Whether an audit comes before a goal's promise.
     fn audits(&self) -> bool {
         self.stop.as_ref().is_some_and(|table| table.0.audits())
@@ -432,11 +440,8 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, given_count, room)?;
     let world = file.truth.as_ref().map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, folder))?;
-    let given = if algorithm.seeks_line() { given } else { given_of_front };
-    let given = given(&file.oracle, &bounds, &area, &world).map_err(|error| {
-        let doubt = file.doubted_slope(&area).map(|doubt| format!(" ({doubt})"));
-        anyhow!("{error}{}", doubt.unwrap_or_default())
-    })?;
+    let reads = if algorithm.seeks_line() { given } else { given_of_front };
+    let given = file.doubting(&area, reads(&file.oracle, &bounds, &area, &world))?;
     if algorithm == Algorithm::Chords {
         chords::ends(&given.samples()[..file.oracle.len()])?;
     }
