@@ -26,8 +26,7 @@ const LEVEL: f64 = 0.9;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrontTable {
-    /// `inf` for a straight line, null in a trace: no patches are sought. Any other radius, metres, has no effect [default: 20
-    /// of the longest motions].
+    /// `inf` if the front is straight, then null in a trace; others have no effect
     pub radius: Option<f64>,
     /// How far it may move in a step, metres [default: 0].
     #[serde(default)]

@@ -379,7 +379,10 @@ impl Curve {
         let Some(gone) = gone else { return };
         if self.counts(&gone.waist) {
             if self.mapped.is_full() {
-                self.mapped.remove(0);
+                let first = self.mapped.remove(0); // a motion and a turn at its end may pass more
+                if let Some(next) = self.mapped.first_mut() {
+                    next.begins |= first.begins;
+                }
             }
             let _ = self.mapped.push(gone); // there is room
         } else {
