@@ -460,7 +460,8 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
             NEARBY..FAR => BESIDE,
             _ => ANYWHERE,
         };
-        let farthest = if self.found().is_some() { farthest } else { 0.0 };
+        // A watch has no label to spare where the front moves.
+        let farthest = if N == 0 && self.found().is_some() { farthest } else { 0.0 };
         let audit = certain_place(&scout.area, curve, pose, (side, farthest));
         let place = audit.or_else(|| best_place((&scout.area, radius), curve, pose));
         let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
