@@ -213,7 +213,7 @@ fn stated_widths_of_lines_hold_the_truth() {
         ("a reliability by its prior", None, unknown, 60, 0.86, 0.5),
     ] {
         let mut rng = ChaCha8Rng::seed_from_u64(32);
-        let fields = cases(100, 3_000);
+        let fields = cases(400, 3_000);
         let (mut holds, mut errors) = (0, Vec::new());
         for _ in 0..fields {
             let (through, angle) = line(&mut rng);
