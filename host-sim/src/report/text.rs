@@ -14,6 +14,7 @@ use crate::mission::results::{
     Results, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
+use crate::mission::vehicle::VehicleTable;
 use crate::output::plain;
 use crate::report::table::{Cells, Column, Table};
 use crate::report::{diagnosis, front};
@@ -384,7 +385,7 @@ fn beginning(title: &str, start: &Start) -> String {
 /// What is possible at the start, at the end of a sentence.
 fn possible(start: &Start) -> String {
     let slopes = || format!("; slopes {} deg are possible.", arcs(&start.slope_arcs));
-    let radius = start.vehicle.as_ref().and_then(|it| it.radius());
+    let radius = start.vehicle.as_ref().and_then(VehicleTable::radius);
     start.front.as_ref().map_or_else(slopes, |told| format!(".\n{}", front::told(told, radius)))
 }
 

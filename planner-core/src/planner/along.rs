@@ -159,7 +159,7 @@ pub(crate) fn certain_place<G: Workspace>(
     while off < farthest {
         let left = median + side * off;
         let below = offsets.below(left);
-        if below < SURE || below > 1.0 - SURE {
+        if (below - 0.5).abs() > 0.5 - SURE {
             let site = curve.site_at(start + AHEAD, left);
             return area.contains(site).then_some(site);
         }

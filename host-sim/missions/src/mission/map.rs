@@ -168,14 +168,14 @@ fn turns(pieces: &Places) -> f64 {
 /// near where the one before ended, or the robot has driven back to the first place.
 fn gaps(pieces: &Places, is_closed: bool) -> f64 {
     let Some((_, first)) = pieces.first().and_then(|piece| piece.first()) else { return 0.0 };
-    let ends = pieces.iter().filter_map(|piece| piece.last());
+    let mut ends = pieces.iter().filter_map(|piece| piece.last());
     let starts = pieces.iter().skip(1).filter_map(|piece| piece.first());
     let off = |from: &VertexRecord, to: &VertexRecord| (to.at() - from.at()).norm();
     let between = ends
         .clone()
         .zip(starts)
         .map(|((_, end), (_, start))| off(end, start).min(off(first, start)));
-    let last = ends.last().filter(|_| is_closed).map_or(0.0, |(_, end)| off(end, first));
+    let last = ends.next_back().filter(|_| is_closed).map_or(0.0, |(_, end)| off(end, first));
     between.sum::<f64>() + last
 }
 

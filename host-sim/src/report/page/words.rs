@@ -9,6 +9,7 @@ use crate::mission::front::VertexRecord;
 use crate::mission::read_out::{Expectation, Knowledge};
 use crate::mission::recording::Recording;
 use crate::mission::results::{AUDIT, LineRecord, Results, StepResult};
+use crate::mission::vehicle::VehicleTable;
 use crate::report::{front, text};
 use crate::world::noise::limit;
 
@@ -119,7 +120,7 @@ pub(crate) fn about(recording: &Recording) -> Vec<String> {
     } else {
         about.push("Labels are true, so each tells one bit at most on average.".to_owned());
     }
-    let radius = start.vehicle.as_ref().and_then(|it| it.radius());
+    let radius = start.vehicle.as_ref().and_then(VehicleTable::radius);
     about.extend(start.front.as_ref().map(|told| front::told(told, radius)));
     let tolerance = mission.config.tolerance.metres();
     if let Some(tolerance) = &start.tolerance {
