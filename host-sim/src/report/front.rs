@@ -8,7 +8,7 @@ use crate::mission::results::StepResult;
 use crate::report::table::{Cells, Column};
 
 /// Bends of less than so many radii of its turning circle are too tight for a car: its map is off, and has gaps.
-const TWICE: f64 = 2.0;
+const LEAST: f64 = 3.0;
 
 /// What the planner is told of the front, and what a car with a turning circle of this radius can follow.
 pub(crate) fn told(&FrontTable { speed, watch, .. }: &FrontTable, circle: Option<f64>) -> String {
@@ -19,7 +19,7 @@ pub(crate) fn told(&FrontTable { speed, watch, .. }: &FrontTable, circle: Option
     };
     let watches = watch.map_or(String::new(), |metres| format!(" It watches {metres} m of it."));
     let follows = circle.map_or(String::new(), |it| {
-        format!(" A car that turns in {it} m follows bends of {:.0} m and more.", TWICE * it)
+        format!(" A car that turns in {it} m follows bends of {:.0} m and more.", LEAST * it)
     });
     format!(
         "The planner is told that the front {moves}, and nothing of how it bends.{watches}{follows}"
