@@ -72,9 +72,13 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
     );
     if record.gaps > UNMAPPED * metres {
         let MapRecord { pieces, gaps, .. } = record;
-        let in_pieces =
-            if *pieces > 1 { format!("It is in {pieces} pieces: ") } else { String::new() };
-        let _ = writeln!(text, "{in_pieces}some {gaps:.0} m of the front are not mapped.");
+        let _ = match pieces {
+            1 => writeln!(text, "Between its ends {gaps:.0} m are not mapped."),
+            _ => writeln!(
+                text,
+                "It is in {pieces} pieces, with {gaps:.0} m between their ends in all."
+            ),
+        };
     }
     if let Some([median, most]) = half_width {
         let _ = writeln!(
