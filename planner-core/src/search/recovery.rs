@@ -12,8 +12,8 @@
 //!    which (1) is feasible, counted in motions, 16 at most. The way never leaves the reach of uncertain ground. Eight
 //!    bearings are considered: along the bisector of the slope arc both ways, across it both ways, and between.
 //! 5. *Courses*, where there is uncertain ground: once a drive to the nearest that is beyond reach, then a way drawn at
-//!    random (`wander`), or a drive drawn at random, to try again from elsewhere. The next plans continue the course
-//!    (`course`).
+//!    random (`wander`). A vehicle that cannot turn on the spot may also make a drive drawn at random, to try again
+//!    from elsewhere. The next plans continue the course (`course`).
 //! 6. Nothing: the ladder returns the reason, and the planner stops with it.
 //!
 //! If keep-outs are in the way, (2) goes round them (`detour`).
@@ -307,12 +307,14 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         Some(Found::of(Some(recovery), *first))
     }
 
-    /// A drive drawn at random, to try again from elsewhere.
+    /// A drive drawn at random, to try again from elsewhere, for a vehicle that has to go round to turn. One that turns on the
+    /// spot came to poses twice.
     fn go_elsewhere(&mut self) -> Option<Found> {
         let tries = self.course.tries.checked_add(1).filter(|tries| *tries <= TRIES)?;
+        let Search { dynamics, pose, .. } = *self.search;
         // A vehicle that is not safe is so near the border that driving on makes it worse.
-        let is_safe = self.search.dynamics.is_safe(self.search.pose, &self.problem.area);
-        let leg = if is_safe { drift(&self.problem, self.search, tries)? } else { return None };
+        let is_free = goes_round(dynamics, pose) && dynamics.is_safe(pose, &self.problem.area);
+        let leg = if is_free { drift(&self.problem, self.search, tries)? } else { return None };
         self.course.tries = tries;
         Some(Found::of(Some(Recovery::Transit), leg))
     }

@@ -9,8 +9,6 @@
 
 use heapless::Vec;
 
-use crate::geometry::approximate::heading_of;
-use crate::geometry::heading::Angle;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
 use crate::search::circles::Search;
@@ -28,9 +26,6 @@ const DRAWN: [(u32, u32); 2] = [(256, 1), (4_096, MOTIONS as u32)];
 
 /// Motions of a way.
 const MOTIONS: usize = 1 + REST;
-
-/// A drive goes straight back within so much of half a turn: 5 degrees.
-const BACK: u32 = 0x038e_38e4;
 
 /// A way, at whose end a label can be asked.
 type Drawn = Vec<Leg, MOTIONS, u8>;
@@ -65,13 +60,7 @@ pub(crate) fn drift<D: Dynamics, R: DirectionRule, G: Workspace>(
 ) -> Option<Leg> {
     let (dynamics, from) = (search.dynamics, search.pose);
     let mut it = Wander { problem, dynamics, effort: search.effort, state: u64::from(number) };
-    // Straight back is where it came from.
-    let is_new = |leg: &Leg| {
-        let way = leg.1.site - from.site;
-        let back = heading_of(way).since(from.heading).0.wrapping_sub(Angle::HALF_TURN.0);
-        way.dot(way) > 0 && (back as i32).unsigned_abs() > BACK
-    };
-    (0..search.effort.looks).find_map(|_| it.draw(from).filter(is_new))
+    (0..search.effort.looks).find_map(|_| it.draw(from).filter(|leg| leg.1.site != from.site))
 }
 
 impl<D: Dynamics, R: DirectionRule, G: Workspace> Wander<'_, '_, '_, D, R, G> {

