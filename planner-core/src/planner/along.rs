@@ -8,9 +8,11 @@
 //! ```
 //!
 //! with way and progress in reaches. A vehicle that turns on a circle looks farther ahead, and its way includes the turn:
-//! a place within its circle costs a turn all round. Progress counts in full where the front is known to a fifth of a reach,
-//! or of the circle's radius, and less where it is known worse. Where it is hardly known, progress counts against a place, so the robot stays and looks. Where the
-//! last two labels were the same, it looks on the other side. Labels on one side alone do not show that a front bends away.
+//! a place within its circle costs a turn all round.
+//!
+//! Progress counts in full where the front is known to a fifth of a reach, or of the circle's radius, and less where it is
+//! known worse. Where it is hardly known, progress counts against a place, so the robot stays and looks. Where the last two
+//! labels were the same, it looks on the other side. Labels on one side alone do not show that a front bends away.
 
 use crate::belief::curve::Curve;
 use crate::belief::front::limited;

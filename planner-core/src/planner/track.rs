@@ -14,8 +14,8 @@
 //!   The curve begins again at the last place that was passed. At the next alarm without a place, or where labels say that
 //!   there is no front, it is sought near by, and then as at the start.
 //!
-//! A mission ends where no front is left to find, where there is no way on,
-//! where the robot is back at its last label, or where [all of the front](Track::until_closed) is mapped.
+//! A mission ends where no front is left to find, where there is no way on, where the robot is back at its last label, or
+//! where it has [gone along all of the front](Track::until_closed).
 
 use crate::belief::curve::{Curve, CurveMemory, MapPlace, nearest_pair};
 use crate::belief::evidence::Alarm;
@@ -462,8 +462,9 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         };
         // A watch has no label to spare where the front moves.
         let farthest = if N == 0 && self.found().is_some() { farthest } else { 0.0 };
-        let audit = certain_place(&scout.area, curve, pose, (side, farthest));
-        let place = audit.or_else(|| best_place((&scout.area, radius), curve, pose));
+        let is_due = farthest > 0.0;
+        let audit = is_due.then(|| certain_place(&scout.area, curve, pose, (side, farthest)));
+        let place = audit.flatten().or_else(|| best_place((&scout.area, radius), curve, pose));
         let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
         let (best, examined) = match leg {
             Some((leg, examined)) => (Some(Best { leg, worth: 0.0 }), examined),
