@@ -5,7 +5,6 @@ use std::mem;
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
 use planner_core::motion::unicycle::Grid;
-use planner_core::watch::Evidence;
 use planner_core::{
     AnyReliability, AnyVehicle, Area, Curve, Front, FrontStretch, Guard, Heading, Label, Noise,
     OneLabel, Planner as _, Pose, Reading, Sample, Site, Tolerance, Track, Trust as _, Unicycle,
@@ -96,14 +95,15 @@ impl Known {
     }
 }
 
+/// Takes in a row; whether the follower began again.
 fn take<const N: usize>(follower: &mut Track<AnyVehicle, Area, N>, row: &Row) -> Result<bool> {
-    let has_evidence = |it: &Track<_, _, N>| *it.belief().evidence() != Evidence::NONE;
-    let had = has_evidence(follower);
+    let was_begun = follower.belief().is_begun();
     for (site, reading) in &row.passed {
         follower.observe_on_the_way(*site, *reading)?;
     }
     follower.observe(row.pose(), row.label.map(Into::into))?;
-    Ok(had && !has_evidence(follower))
+    let is_alarmed = follower.alarm().is_some_and(|it| it.is_grave());
+    Ok(is_alarmed || was_begun && !follower.belief().is_begun())
 }
 
 impl Row {

@@ -36,6 +36,9 @@ const MOST: f32 = 1e30;
 /// that bends or moves as well.
 const CLEARLY: f32 = 8.0;
 
+/// The chance of a label that is not counted, whatever it is: that has to be known before it is read.
+pub(crate) const NO_EVIDENCE: f32 = f32::INFINITY;
+
 /// What explains the labels better than the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -108,8 +111,12 @@ impl Evidence {
     pub const NONE: Self = Self { made: [0.0; 3], left: 1.0, last: None };
 
     /// Takes in a label. `chance` is that of this label before it was read, or more: what
-    /// [`Belief::chance_of`](crate::belief::Belief::chance_of) says. With 0 it is a label that no line left has.
+    /// [`Belief::chance_of`](crate::belief::Belief::chance_of) says. With 0 it is a label that no line left has. With more than 1
+    /// it is no evidence, and not counted.
     pub fn observe(&mut self, label: Label, chance: f32) {
+        if chance > 1.0 + ROUNDING {
+            return;
+        }
         let chance = if chance > 0.0 { chance + ROUNDING } else { ROUNDING };
         let repeats = match self.last {
             None => 0.5,

@@ -117,7 +117,8 @@ pub trait Belief {
     fn chance(&self, site: Site) -> f64;
 
     /// The chance of a label read at a site whose position may be off by the tolerance, or more than that. Where positions
-    /// are exact, it is exact to 10^-5. It is in single precision, and the same on every machine.
+    /// are exact, it is exact to 10^-5. It is in single precision, and the same on every machine. More than 1 where a label is
+    /// no evidence for or against the model.
     fn chance_of(&self, site: Site, label: Label) -> f32 {
         let above = self.chance(site) as f32;
         if label == Label::Positive { above } else { 1.0 - above }

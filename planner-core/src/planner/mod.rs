@@ -22,6 +22,7 @@ pub mod far;
 pub mod front_state;
 mod hunt;
 pub mod lap;
+mod led;
 pub mod lookahead;
 pub(crate) mod one_label;
 pub mod options;
@@ -36,6 +37,7 @@ pub mod silence;
 pub mod snapshot;
 pub(crate) mod stretch;
 pub mod track;
+mod turns;
 mod vote;
 pub mod watched;
 
@@ -246,8 +248,8 @@ pub trait Planner {
     /// What is known.
     fn belief(&self) -> &Self::Belief;
 
-    /// What speaks against a straight, still line, if it is much. Only a [`Watched`](crate::watch::Watched) planner says
-    /// so: any other has `None`.
+    /// What speaks against the model, if it is much. A [`Watched`](crate::watch::Watched) planner and those that begin from
+    /// nothing count evidence: any other has `None`.
     fn alarm(&self) -> Option<Alarm> {
         None
     }

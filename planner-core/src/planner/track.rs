@@ -20,7 +20,7 @@
 use crate::belief::curve::{Curve, CurveMemory, MapPlace, nearest_pair};
 use crate::belief::evidence::Alarm;
 use crate::belief::field::{REMEMBERED, Seeking};
-use crate::belief::front::{Beside, Front, FrontStretch, Unit, Waist, metres};
+use crate::belief::front::{Beside, Front, FrontStretch, Waist};
 use crate::belief::lines::{Lines, LinesMemory};
 use crate::belief::noise::Noise;
 use crate::belief::observation_log::{FromLog as _, ReplayError};
@@ -41,6 +41,7 @@ use crate::planner::along::{best_place, certain_place, sure_label, towards};
 use crate::planner::front_state::FrontState;
 use crate::planner::hunt::Hunt;
 use crate::planner::lap::Lap;
+use crate::planner::led::Led;
 use crate::planner::one_label::OneLabel;
 use crate::planner::quest::{Phase, QuestMemory};
 use crate::planner::scout::{Best, FAINT, Scout};
@@ -48,6 +49,7 @@ use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::stretch::{Known, PARTS, Stretch};
+use crate::planner::turns::Turns;
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
 /// After so many alarms without a place in between it is lost.
@@ -59,20 +61,6 @@ const ELSEWHERE: f32 = 0.97;
 /// The grid for labels that may be wrong, about where a front was crossed.
 const DIRECTIONS: usize = 16;
 const OFFSETS: usize = 16;
-
-/// After so many labels one is read on certain ground, if that is near; after so many it may be far. After one that
-/// surprises, the next comes soon.
-const NEARBY: u8 = 14;
-const FAR: u8 = 22;
-const AUDIT: u8 = FAR + 3;
-const SOON: u8 = 2;
-
-/// Near and far are so many reaches beside the front.
-const BESIDE: f32 = 0.5;
-const ANYWHERE: f32 = 2.0;
-
-/// A robot that is led has turned where it has gone back by so many reaches.
-const BACK: f32 = 2.0;
 
 /// A front may have moved on by so many reaches where the robot drives back to it.
 const MOVED: f32 = 2.0;
@@ -108,12 +96,11 @@ pub struct Track<D, G = Area, const N: usize = 0> {
     stretch: Stretch<N>,
     /// The pose at the last label that was read at the end of a motion.
     heard_at: Option<Pose>,
-    /// Which label along the front is the next, of as many as there are from one on certain ground to the next but one.
-    turn: u8,
+    turns: Turns,
     /// Whether it ends once the robot has gone along all of the front.
     ends: bool,
-    /// Where it is led, and by how far it has gone back along the front; `None` if it plans itself.
-    led: Option<(Site, f32)>,
+    /// How it is led; `None` if it plans itself.
+    led: Option<Led>,
 }
 
 /// What a follower has to remember beside its curve.
@@ -124,7 +111,7 @@ pub struct TrackMemory<const N: usize = 0> {
     lap: Lap,
     stretch: Stretch<N>,
     heard_at: Option<Pose>,
-    turn: u8,
+    turns: Turns,
     quest: QuestMemory,
     /// Before the curve begins.
     closing: Option<LinesMemory<DIRECTIONS, OFFSETS>>,
@@ -173,7 +160,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// [mapped](Curve::mapped) so far.
     #[must_use]
     pub fn led(self) -> Self {
-        Self { led: Some((Site::ORIGIN, 0.0)), ..self }
+        Self { led: Some(Led::default()), ..self }
     }
 }
 
@@ -229,7 +216,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
             lap: Lap::NONE,
             stretch: Stretch::new(stretch),
             heard_at: None,
-            turn: 0,
+            turns: Turns::default(),
             ends: false,
             led: None,
         }
@@ -401,18 +388,6 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         }
     }
 
-    /// Turns round where the robot has gone back, from a site and by so much, to another site.
-    fn go_led(&mut self, (from, back): (Site, f32), to: Site) -> (Site, f32) {
-        let Waist { heading, .. } = self.curve.now();
-        let [gone, _] = Unit::of(heading).seen(metres(to - from));
-        let back = if self.curve.is_flipped() { back + gone } else { back - gone };
-        if back > BACK * self.curve.reach() {
-            self.curve.turn_round();
-            return (to, 0.0);
-        }
-        (to, if back > 0.0 { back } else { 0.0 })
-    }
-
     /// Keeps the stretch in mind, and turns at its ends, and where the front leaves the area.
     fn keep_stretch(&mut self, pose: Pose) {
         let (reach, found) = (self.hunt.scout.reach(), self.found());
@@ -453,18 +428,11 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         let (reach, radius) = (scout.reach(), scout.radius());
         let aim = Aim::new(curve.now(), !curve.is_flipped());
         let with = (&scout.area, reach);
-        // On either side in turn.
-        let side = if self.turn < AUDIT { 1.0 } else { -1.0 };
-        let farthest = match self.turn % AUDIT {
-            0..NEARBY => 0.0,
-            NEARBY..FAR => BESIDE,
-            _ => ANYWHERE,
-        };
         // A watch has no label to spare where the front moves.
-        let farthest = if N == 0 && self.found().is_some() { farthest } else { 0.0 };
-        let is_due = farthest > 0.0;
-        let audit = is_due.then(|| certain_place(&scout.area, curve, pose, (side, farthest)));
-        let place = audit.flatten().or_else(|| best_place((&scout.area, radius), curve, pose));
+        let audits = N == 0 && self.found().is_some();
+        let due = self.turns.due().filter(|_| audits);
+        let audit = due.and_then(|it| certain_place(&scout.area, curve, pose, it));
+        let place = audit.or_else(|| best_place((&scout.area, radius), curve, pose));
         let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
         let (best, examined) = match leg {
             Some((leg, examined)) => (Some(Best { leg, worth: 0.0 }), examined),
@@ -547,13 +515,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Planner for Track<D, G, N> {
             if let Some(reading) = reading {
                 let expected = sure_label(self.curve.share_above(pose.site));
                 self.curve.observe_within(pose.site, reading, tolerance)?;
-                self.turn = match expected {
-                    Some(label) if self.turn % AUDIT >= NEARBY => {
-                        let next = (self.turn / AUDIT + 1) % 2 * AUDIT;
-                        if reading == label.into() { next } else { next + FAR - SOON }
-                    }
-                    _ => (self.turn + 1) % (2 * AUDIT),
-                };
+                self.turns.hear(reading, expected);
             }
             self.judge(pose);
         }
@@ -564,7 +526,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Planner for Track<D, G, N> {
         scout.silence.observe(reading.is_some());
         scout.quest.moved(pose.site, reading.is_some());
         match self.led {
-            Some(led) => self.led = Some(self.go_led(led, pose.site)),
+            Some(led) => self.led = Some(led.to(pose.site, &mut self.curve)),
             None if N > 0 => self.keep_stretch(pose),
             None => self.keep_lap(pose),
         }
@@ -609,7 +571,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Restart for Track<D, G, N> {
 
     /// Begins again in the rectangle around its area. Nothing is told of how likely fronts are.
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
-        (self.lap, self.heard_at, self.turn) = (Lap::NONE, None, 0);
+        (self.lap, self.heard_at, self.turns) = (Lap::NONE, None, Turns::default());
         self.stretch = Stretch::new(self.stretch.length());
         self.hunt.restart(noise, &[])?;
         self.begin_curve(noise.into());
@@ -625,16 +587,17 @@ impl<D: Dynamics, G: Workspace, const N: usize> Persist for Track<D, G, N> {
     fn snapshot(&self) -> Self::Snapshot {
         let Scout { silence, quest, .. } = &self.hunt.scout;
         let (silence, quest) = (*silence, quest.memory());
-        let Self { lap, heard_at, turn, .. } = *self;
+        let Self { lap, heard_at, turns, .. } = *self;
         let stretch = self.stretch.clone();
         let closing = (!self.curve.is_begun()).then(|| self.hunt.lines.log());
-        let memory = TrackMemory { silence, lap, stretch, heard_at, turn, quest, closing };
+        let memory = TrackMemory { silence, lap, stretch, heard_at, turns, quest, closing };
         Snapshot::new(self.mark(), self.curve.log(), memory)
     }
 
     fn restore(&mut self, snapshot: &Self::Snapshot) -> Result<(), RestoreError> {
         let (log, memory) = snapshot.open(self.mark())?;
-        let is_possible = memory.lap.is_possible() && memory.stretch.is_possible();
+        let is_possible =
+            memory.lap.is_possible() && memory.stretch.is_possible() && memory.turns.is_possible();
         if !is_possible || !self.hunt.scout.quest.recall(&memory.quest) {
             return Err(ReplayError::Spoilt.into());
         }
@@ -642,8 +605,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Persist for Track<D, G, N> {
         if let Some(closing) = &memory.closing {
             self.hunt.lines.replay(closing)?;
         }
-        (self.lap, self.heard_at) = (memory.lap, memory.heard_at);
-        self.turn = memory.turn % (2 * AUDIT);
+        (self.lap, self.heard_at, self.turns) = (memory.lap, memory.heard_at, memory.turns);
         self.stretch = memory.stretch.clone();
         self.hunt.scout.silence = memory.silence;
         Ok(())

@@ -6,7 +6,6 @@ use crate::belief::sample::Reading;
 use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
-use crate::planner::watched::Watched;
 use crate::planner::{Motion, Plan, Planner, StopReason};
 use crate::robot::body::Body;
 
@@ -30,8 +29,8 @@ pub struct Step {
     pub pose: Pose,
     /// What was sensed there, if a sample was taken.
     pub reading: Option<Reading>,
-    /// What has begun to speak against a straight, still line. It is there on the step that brings the evidence of a
-    /// [`Watched`] planner to a warning or to an alarm, and on no other.
+    /// What has begun to speak against the model. It is there on the step that brings the evidence to a warning or to an
+    /// alarm, and on no other. A follower of fronts and a [`Watched`](crate::watch::Watched) planner count evidence.
     pub alarm: Option<Alarm>,
 }
 
@@ -102,11 +101,9 @@ impl<P: Planner, B> Agent<P, B> {
     pub fn estimate(&self) -> Option<Line> {
         self.planner.estimate()
     }
-}
 
-impl<P: Planner, B> Agent<Watched<P>, B> {
-    /// What speaks against a straight, still line, if it is much. A label that was refused counts too, of which there
-    /// is no [`Step`].
+    /// What speaks against the model, if it is much, of a planner that [keeps watch](Planner::alarm). A label that was
+    /// refused counts too, of which there is no [`Step`].
     pub fn alarm(&self) -> Option<Alarm> {
         self.planner.alarm()
     }

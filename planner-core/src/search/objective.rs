@@ -112,7 +112,7 @@ impl Effort {
     pub(crate) fn within<G: Workspace>(area: &G, looks: u32) -> Self {
         let (sides, keep_outs) = (area.sides().count(), area.keep_outs().skip(FEW).count());
         let takes = RECTANGLE + SIDE * sides as u32 + KEEP_OUT * keep_outs as u32;
-        Self::of(looks * RECTANGLE / takes)
+        Self::of((looks * RECTANGLE).checked_div(takes).unwrap_or(0))
     }
 
     /// Keeps back all looks but `all_but`. [`give_back`](Self::give_back) adds them again.

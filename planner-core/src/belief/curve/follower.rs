@@ -20,7 +20,7 @@ use crate::geometry::value::ValueError;
 const LEAST: f32 = 0.003;
 
 /// The place of a label is blurred by this share of a reach at least.
-const BLUR: f32 = 0.005;
+pub(super) const BLUR: f32 = 0.005;
 
 /// A tolerance is so many deviations.
 const TOLERANCE: f32 = 3.0;
@@ -33,6 +33,9 @@ const MOST_BEND: f32 = 0.8;
 
 /// It is turned by no more than this at once, radians.
 const MOST_TURN: f32 = 1.0;
+
+/// So many places leave at once at most: those that a motion passes, and all where the robot turns at its end.
+const LEFT_AT_ONCE: usize = PLACES + 4;
 
 /// A way is taken in pieces of a reach at most, and in so many of them.
 const PIECES: u32 = 8;
@@ -84,7 +87,7 @@ pub(super) struct Passed {
 
 /// What is known of a front beside a robot that goes along it. Nothing is told of how it bends.
 ///
-/// It takes 3.6 kB. A label and a motion take time that does not depend on how many there were.
+/// It takes 3.7 kB. A label and a motion take time that does not depend on how many there were.
 ///
 /// ```
 /// # use planner_core::{
@@ -128,7 +131,7 @@ pub struct Curve {
     /// The last label, and how many were the same.
     pub(super) run: (Option<Label>, u8),
     /// Places that have left the window since the last plan, the oldest first.
-    pub(super) mapped: heapless::Vec<MapPlace, PLACES, u8>,
+    pub(super) mapped: heapless::Vec<MapPlace, LEFT_AT_ONCE, u8>,
     /// The probability that there is no front here, and all of the ground is +1, or is -1.
     pub(super) nowhere: [f32; 2],
     /// How often labels spoke against it since the last place that was passed.
@@ -278,7 +281,9 @@ impl Curve {
     /// There is no such front: the last places are not on the map.
     pub(crate) fn lose(&mut self) {
         self.passed.clear();
-        self.evidence = Evidence::NONE;
+        if !self.is_alarmed() {
+            self.evidence = Evidence::NONE;
+        }
         self.leave();
     }
 
@@ -379,7 +384,7 @@ impl Curve {
         let Some(gone) = gone else { return };
         if self.counts(&gone.waist) {
             if self.mapped.is_full() {
-                let first = self.mapped.remove(0); // a motion and a turn at its end may pass more
+                let first = self.mapped.remove(0); // the robot was carried here
                 if let Some(next) = self.mapped.first_mut() {
                     next.begins |= first.begins;
                 }
@@ -457,7 +462,12 @@ impl Curve {
         self.passed.clear(); // labels speak against these
         let doubts = self.doubts.saturating_add(1);
         self.set(self.arc, ANEW);
-        (self.doubts, self.evidence) = (doubts, Evidence::NONE);
+        self.doubts = doubts;
+    }
+
+    /// Whether an alarm was raised by the last label. The evidence is kept until the next one, for whoever asks.
+    pub(super) fn is_alarmed(&self) -> bool {
+        self.evidence.alarm().is_some_and(|it| it.is_grave())
     }
 
     /// How often labels have spoken against it since a place was passed.
@@ -521,7 +531,7 @@ impl Curve {
         self.mapped.clear();
     }
 
-    /// The evidence of the labels against what is known, since it began again.
+    /// The evidence of the labels against what is known. After an alarm it is counted anew from the next label on.
     pub const fn evidence(&self) -> &Evidence {
         &self.evidence
     }

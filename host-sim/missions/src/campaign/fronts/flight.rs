@@ -117,10 +117,6 @@ impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
     fn is_closed(&self) -> bool {
         false
     }
-
-    fn has_evidence(&self) -> bool {
-        false
-    }
 }
 
 /// A unicycle with motions of up to so many metres, in steps of 10 cm. It turns by up to a quarter turn.

@@ -2,7 +2,6 @@
 
 use nalgebra::Point2;
 use planner_core::dynamics::Dynamics;
-use planner_core::watch::Evidence;
 use planner_core::{MapPlace, Plan, Planner, Pose, Track, Workspace};
 use rand_chacha::ChaCha8Rng;
 
@@ -35,8 +34,10 @@ pub trait Follower: Planner {
     /// Whether it has gone along all of a closed front.
     fn is_closed(&self) -> bool;
 
-    /// Whether labels have spoken for or against what was told, since it began. It forgets them where it begins again.
-    fn has_evidence(&self) -> bool;
+    /// Whether it follows a front: it was crossed, and is not lost.
+    fn is_begun(&self) -> bool {
+        false
+    }
 }
 
 /// A vertex of the map.
@@ -69,8 +70,8 @@ impl<D: Dynamics, G: Workspace> Follower for Track<D, G> {
         Self::is_closed(self)
     }
 
-    fn has_evidence(&self) -> bool {
-        *self.belief().evidence() != Evidence::NONE
+    fn is_begun(&self) -> bool {
+        self.belief().is_begun()
     }
 }
 
@@ -144,11 +145,12 @@ pub fn follow<P: Follower>(
         let at = Point2::<f64>::from(pose.site);
         let label = front.sensed(at, steps, course.p, rng);
         let reading = next.wants_label.then(|| label.into());
-        let had_evidence = planner.has_evidence();
+        let was_begun = planner.is_begun();
         planner.observe(pose, reading).expect("any label is taken in");
         look(&planner, before, pose);
         flown.labels += u32::from(reading.is_some());
-        flown.restarts += u32::from(had_evidence && !planner.has_evidence());
+        let is_alarmed = planner.alarm().is_some_and(|it| it.is_grave());
+        flown.restarts += u32::from(is_alarmed || was_begun && !planner.is_begun());
         flown.driven += if last.is_some() || planner.is_found() { (at - from).norm() } else { 0.0 };
         let rest = if motion == course.motions { planner.rest() } else { Vec::new() };
         for vertex in planner.vertices().into_iter().chain(rest) {
