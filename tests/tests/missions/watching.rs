@@ -132,9 +132,9 @@ impl Watching {
 /// 0.084.
 const WORLDS: [(bool, f64, f64, f64); 8] = [
     (false, 0.05, 1.0, 0.052),
-    (false, 0.05, 0.9, 0.165),
+    (false, 0.05, 0.9, 0.17),
     (true, 0.05, 1.0, 0.067),
-    (true, 0.05, 0.9, 0.192),
+    (true, 0.05, 0.9, 0.195),
     (false, 0.0, 1.0, 0.0093),
     (false, 0.0, 0.9, 0.076),
     (true, 0.0, 1.0, 0.0116),
@@ -150,7 +150,7 @@ fn a_watched_stretch_is_known_all_along() {
     let slack = if is_long() { 1.0 } else { 1.1 };
     for &(is_circle, speed, p, most) in worlds {
         let world = World { is_circle, speed, p };
-        let of_each = ensemble::fly(cases(50, 100), |number| {
+        let of_each = ensemble::fly(cases(50, 200), |number| {
             let mut it = Watching::begin(SEED, number, world, STRETCH);
             let (begun, mut measured) = (it.motion, Vec::new());
             while it.motion < begun + MOTIONS {

@@ -1,6 +1,7 @@
 //! A sum of Gaussians: three for each of five gaits.
 //!
-//! On the way a share of the mass leaves its gait, and comes back as one Gaussian into each. A label splits each Gaussian:
+//! On the way a share of the mass leaves its gait, and comes back as one Gaussian into each: the more
+//! into corners, the more of these there were before. Then more leaves, too. So a jagged shore has wider places than a smooth one. A label splits each Gaussian:
 //! the label tells nothing with the chance that it is false, or it is true. Those that change the distribution of the
 //! offset the least are merged until three are left (Runnalls 2007).
 
@@ -18,14 +19,25 @@ const GAITS: [Gait; 5] = [
     Gait { noise: [0.015, 0.0, 0.0], fades: 1.0 / 20.0, prior: 0.45 },
     Gait { noise: [0.05, 0.0, 0.0], fades: 1.0 / 8.0, prior: 0.20 },
     Gait { noise: [0.1, 0.4, 0.0], fades: 1.0 / 3.0, prior: 0.03 },
-    Gait { noise: [0.1, 0.4, 0.7], fades: 1.0 / 3.0, prior: 0.02 },
+    Gait { noise: [0.1, 1.0, 0.7], fades: 1.0 / 3.0, prior: 0.02 },
 ];
+
+/// So many of them are smooth; what the corners are of the whole if nothing is known.
+const SMOOTH: usize = 3;
+const CORNERS: f32 = 0.05;
 
 /// Parts of a gait's Gaussians: a label splits each of them.
 const PARTS: usize = 2 * EACH;
 
 /// The mass that leaves its gait in a reach.
 const LEAVES: f32 = 0.02;
+
+/// And so much more by the share of corners, where these are more than usual.
+const OFTEN: f32 = 0.5;
+
+/// How fast the usual share follows that of the corners, in a reach. So much of it stays as it was at first.
+const LEARNS: f32 = 0.025;
+const KEPT: f32 = 0.2;
 
 /// Of a Gaussian of less weight none is made.
 const LIGHT: f32 = 1e-6;
@@ -44,6 +56,8 @@ pub(crate) type Offsets = Mixture<ALL>;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Bank {
     of: [[Gaussian; EACH]; GAITS.len()],
+    /// How much of the front went round corners so far.
+    corners: f32,
 }
 
 /// A label as it is taken in.
@@ -61,15 +75,21 @@ pub(crate) struct Heard {
 
 impl Bank {
     /// Nothing is known.
-    pub(crate) const NONE: Self = Self { of: [[Gaussian::NONE; EACH]; GAITS.len()] };
+    pub(crate) const NONE: Self =
+        Self { of: [[Gaussian::NONE; EACH]; GAITS.len()], corners: CORNERS };
+
+    /// Forgets how the front went.
+    pub(crate) const fn forget(&mut self) {
+        self.corners = CORNERS;
+    }
 
     /// Begins with deviations of offset and turn, where it is: it is large.
     #[inline(never)]
     pub(crate) fn begin(&mut self, [offset, turn]: [f32; 2]) {
-        for (some, gait) in self.of.iter_mut().zip(&GAITS) {
+        for (some, usual) in self.of.iter_mut().zip(usual(self.corners)) {
             for (it, side) in some.iter_mut().zip([-1.0, 0.0, 1.0]) {
                 let spread = [offset, APART * turn, BEND];
-                *it = Gaussian::about(gait.prior / EACH as f32, side * turn, spread);
+                *it = Gaussian::about(usual / EACH as f32, side * turn, spread);
             }
         }
     }
@@ -81,7 +101,8 @@ impl Bank {
     /// Whether motions and labels can have made it.
     pub(crate) fn is_valid(&self) -> bool {
         let sum: f32 = self.all().map(|it| it.weight).sum();
-        (sum - 1.0).abs() < 1e-2 && self.all().all(Gaussian::is_valid)
+        let is_share = (0.0..=1.01).contains(&self.corners);
+        (sum - 1.0).abs() < 1e-2 && is_share && self.all().all(Gaussian::is_valid)
     }
 
     /// Goes along the reference, which has a curvature, in reaches.
@@ -103,21 +124,30 @@ impl Bank {
         self.of.iter_mut().flatten().for_each(|it| it.turn_round(turns));
     }
 
+    /// Takes in how the front goes on a way. Not of a front that moves: that looks like bends.
+    pub(crate) fn learn(&mut self, way: f32) {
+        let learns = 1.0 - libm::expf(-LEARNS * way);
+        let weight: f32 = self.of.iter().skip(SMOOTH).flatten().map(|it| it.weight).sum();
+        self.corners += learns * (KEPT * CORNERS + (1.0 - KEPT) * weight - self.corners);
+    }
+
     /// Lets a share of the mass leave its gait on a way, and come back into each.
     #[inline(never)] // what it needs is not on the stack of all that observes
     pub(crate) fn mix(&mut self, way: f32) {
-        let leaves = 1.0 - libm::expf(-LEAVES * way);
+        let often = self.corners - CORNERS;
+        let leaves = LEAVES + if often > 0.0 { OFTEN * often } else { 0.0 };
+        let leaves = 1.0 - libm::expf(-leaves * way);
         let mut pool = Gaussian::NONE;
         for it in self.all().filter(|it| it.weight > LIGHT) {
             pool.join(it, it.offset());
         }
         let all = pool.offset();
-        for (some, gait) in self.of.iter_mut().zip(&GAITS) {
+        for (some, usual) in self.of.iter_mut().zip(usual(self.corners)) {
             let mut crowd = Crowd::NONE;
             for (k, it) in some.iter().enumerate() {
                 crowd.add(k, Offset { weight: it.weight * (1.0 - leaves), ..it.offset() });
             }
-            crowd.add(EACH, Offset { weight: leaves * gait.prior, ..all });
+            crowd.add(EACH, Offset { weight: leaves * usual, ..all });
             crowd.settle(some, &pool);
         }
     }
@@ -185,6 +215,13 @@ impl Bank {
             it.means[1] -= bend;
         }
     }
+}
+
+/// What comes back into each gait where the front went round corners for so much of its way.
+fn usual(corners: f32) -> impl Iterator<Item = f32> {
+    let smooth = (1.0 - corners) / (1.0 - CORNERS);
+    let factor = move |n: usize| if n < SMOOTH { smooth } else { corners / CORNERS };
+    GAITS.iter().enumerate().map(move |(n, gait)| gait.prior * factor(n))
 }
 
 /// An offset of one of the Gaussians that come together.

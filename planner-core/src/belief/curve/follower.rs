@@ -209,6 +209,7 @@ impl Curve {
         (self.reach, self.pace, self.noise) = (reach, front.pace(), noise);
         self.passed.clear();
         self.mapped.clear();
+        self.bank.forget();
         (self.evidence, self.doubts, self.is_begun) = (Evidence::NONE, 0, false);
         (self.nowhere, self.is_fresh) = ([0.0; 2], true);
     }
@@ -339,6 +340,9 @@ impl Curve {
             }
         }
         if gone > STILL {
+            if self.pace == 0.0 {
+                self.bank.learn(gone);
+            }
             self.bank.mix(gone);
         }
     }

@@ -16,7 +16,7 @@ pub struct Kind {
 }
 
 /// The kinds, in the order of tables.
-pub const KINDS: [Kind; 9] = [
+pub const KINDS: [Kind; 10] = [
     Kind { name: "circle of 20 m", draw: |rng| TrueFront::circle(20.0, rng), speed: 0.0 },
     Kind { name: "circle of 100 m", draw: |rng| TrueFront::circle(100.0, rng), speed: 0.0 },
     Kind { name: "sine of 4 m at 60 m", draw: |rng| TrueFront::sine(4.0, 60.0, rng), speed: 0.0 },
@@ -38,4 +38,5 @@ pub const KINDS: [Kind; 9] = [
     },
     Kind { name: "sine of 2 m at 23 m", draw: |rng| TrueFront::sine(2.0, 23.0, rng), speed: 0.0 },
     Kind { name: "saw of 40 m", draw: |rng| TrueFront::corners(40.0, rng), speed: 0.0 },
+    Kind { name: "jagged shore", draw: TrueFront::jagged, speed: 0.0 },
 ];

@@ -81,6 +81,25 @@ impl TrueFront {
         Self::through((-count..=count).map(at).collect(), FRAC_PI_4)
     }
 
+    /// A jagged shore: legs of 3 to 10 m, in directions within 70 degrees of one.
+    pub fn jagged(rng: &mut ChaCha8Rng) -> Self {
+        let mut at = Point2::new(-FAR, 0.0);
+        let mut way = vec![at];
+        while at.x < FAR {
+            let (leg, angle) = (rng.random_range(3.0..10.0), rng.random_range(-1.2..1.2));
+            // It stays about z = 0, and has places a metre apart.
+            let angle = if angle * at.y > 0.0 && at.y.abs() > 20.0 { -angle } else { angle };
+            let (sin, cos) = libm::sincos(angle);
+            let places = libm::ceil(leg) as i32;
+            let by = Vector2::new(cos, sin) * (leg / f64::from(places));
+            way.extend((1..=places).map(|n| at + by * f64::from(n)));
+            at = way[way.len() - 1];
+        }
+        let middle = way.len() / 2;
+        let by = way[middle + 1] - way[middle];
+        Self::through(way, libm::atan2(by.y, by.x))
+    }
+
     /// Through places, from the one in the middle.
     fn through(way: Vec<Point2<f64>>, angle: f64) -> Self {
         let place = way[way.len() / 2];
