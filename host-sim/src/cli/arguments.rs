@@ -104,7 +104,7 @@ impl Cli {
             Some(Command::Replay(args)) => return replay(&args),
             Some(Command::Hil(args)) => return hil(&args),
             None => paper::tell(),
-            Some(Command::Campaign(args)) => campaign(*args),
+            Some(Command::Campaign(args)) => campaign(&args),
             Some(Command::Join(args)) => join(&args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Size(args)) => size(&args),

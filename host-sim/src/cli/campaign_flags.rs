@@ -1,4 +1,4 @@
-//! The flags that determine a campaign. They say what to fly; stored beside rows, they record what was flown.
+//! The flags that determine a campaign: what to fly.
 
 use std::slice;
 
@@ -7,7 +7,6 @@ use clap::builder::ArgPredicate;
 use clap::{Args, ValueEnum};
 use planner_core::motion::unicycle::Grid;
 use planner_core::{AnyReliability, AnyVehicle, Area, Reliability, UnknownReliability};
-use serde::{Deserialize, Serialize};
 
 use crate::campaign::ensemble::Campaign;
 use crate::campaign::rows::Planners;
@@ -25,9 +24,11 @@ use crate::world::noise::{Extent, NoiseModel, limit};
 /// Points that the oracle gives in a standard field.
 const ORACLE: usize = 4;
 
+/// Fields at most: figures are sorted in memory, some 300 MB of it.
+pub(crate) const MOST_FIELDS: u64 = 1_000_000;
+
 /// The settings that determine the rows of a campaign.
-#[derive(Debug, Args, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+#[derive(Debug, Args)]
 pub(crate) struct CampaignFlags {
     /// Number of standard fields; with --fronts missions for each kind of front, 300 by default and at most 10000; the
     /// same with --patches, 200 by default
@@ -38,7 +39,7 @@ pub(crate) struct CampaignFlags {
             ("fronts", ArgPredicate::IsPresent, "300"),
             ("patches", ArgPredicate::IsPresent, "200"),
         ]),
-        value_parser = clap::value_parser!(u64).range(1..=1_000_000_000)
+        value_parser = clap::value_parser!(u64).range(1..=MOST_FIELDS)
     )]
     pub(crate) fields: u64,
     /// Steps in each, 1 to 64; where labels are true, or with --labels or --price, 1 to 10000
@@ -46,7 +47,6 @@ pub(crate) struct CampaignFlags {
     steps: u32,
     /// Readings of each motion, 1 to 50, evenly spread over its length; the last is the label at its end
     #[arg(long, default_value_t = 1)]
-    #[serde(default = "one", skip_serializing_if = "is_one")]
     readings: u32,
     /// Measure at every step (or label), not only at those of the usual tables
     #[arg(long)]
@@ -106,32 +106,25 @@ pub(crate) struct CampaignFlags {
     tolerance: Option<f64>,
     /// Added to the tolerance: how far the boundary may be from a straight line, metres (the fields' are straight)
     #[arg(long, value_name = "METRES", default_value_t = 0.0)]
-    #[serde(default, skip_serializing_if = "is_none")]
     bend: f64,
     /// Added to the tolerance: how far the line may move during a mission, metres (the fields' do not move)
     #[arg(long, value_name = "METRES", default_value_t = 0.0)]
-    #[serde(default, skip_serializing_if = "is_none")]
     drift: f64,
     /// The sides of the fields, metres: the standard fields are stretched to them [default: 20,20]
     #[arg(long, value_name = "X,Z", value_delimiter = ',')]
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     area: Vec<f64>,
     /// Planners are given no points: they first seek the line
     #[arg(long, conflicts_with_all = ["trusted_radius", "fields_csv"])]
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     from_nothing: bool,
     /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: none; with
     /// --labels up to an eighth of the mean side, by how far --steps lead]
     #[arg(long, value_name = "METRES|none")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     price: Option<Price>,
     /// Bits that a label must be expected to carry, else it is not read (lookahead) [default: 0]
     #[arg(long, value_name = "BITS")]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     worth: Option<f64>,
     /// Labels in each at most; then missions are compared by labels and not by steps
     #[arg(long)]
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     labels: Option<u32>,
     /// How hypotheses choose an action together (scc) [default: mixture-of-own]
     #[arg(long, value_enum)]
@@ -139,22 +132,6 @@ pub(crate) struct CampaignFlags {
     /// How hypotheses are weighed in that (scc; lookahead and margin where p is below 1) [default: area]
     #[arg(long, value_enum)]
     prior: Option<PriorName>,
-}
-
-/// Whether a distance is 0: it is then not stored, as before there were such flags.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-fn is_none(metres: &f64) -> bool {
-    *metres == 0.0
-}
-
-const fn one() -> u32 {
-    1
-}
-
-/// Whether it is 1: it is then not stored, as before there was such a flag.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
-const fn is_one(number: &u32) -> bool {
-    *number == 1
 }
 
 /// What is to be flown.

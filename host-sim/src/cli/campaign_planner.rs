@@ -3,14 +3,12 @@
 use anyhow::{Result, bail};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
-use serde::{Deserialize, Serialize};
 
 use crate::campaign::fronts::who::Who;
 use crate::mission::algorithm::Algorithm;
 
-/// Who plans in a campaign. Records have those of the standard fields alone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(untagged, from = "Algorithm")]
+/// Who plans in a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum CampaignPlanner {
     /// In the standard fields.
     Line(Algorithm),

@@ -34,7 +34,7 @@ pub(crate) struct FrontsFlags {
 }
 
 /// Flags of the standard fields that have no meaning with `--fronts`.
-const MEANINGLESS: [&str; 32] = [
+const MEANINGLESS: [&str; 31] = [
     "steps",
     "readings",
     "every",
@@ -62,8 +62,7 @@ const MEANINGLESS: [&str; 32] = [
     "policy",
     "prior",
     "csv",
-    "resume",
-    "shard",
+    "from",
     "fields_csv",
     "figure",
     "from_nothing",

@@ -86,12 +86,8 @@ Examples:
   host-sim campaign --compare cfc,lookahead,random --figure curves.svg
   host-sim campaign --fronts --compare track,zigzag,bang-bang   fronts that bend and move
   host-sim campaign --patches                        patches and coasts from nothing, beside a lawnmower
-  host-sim campaign --fields 1000000 --csv rows.csv             if stopped: the same with --resume
-  host-sim campaign --shard 1/4 --csv 1.csv                     a quarter, see docs/campaigns.md";
-
-pub(crate) const MERGE: &str = "\
-Examples:
-  host-sim campaign merge 1.csv 2.csv 3.csv 4.csv --csv rows.csv";
+  host-sim campaign --fields 100000 --csv rows.csv              a row for each field and stage
+  host-sim campaign --from 1000 --csv more.csv                  the next 1,000 fields, see docs/campaigns.md";
 
 pub(crate) const FIGURE: &str = "\
 Examples:

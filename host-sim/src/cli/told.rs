@@ -1,22 +1,20 @@
 //! The results of campaigns, from their rows: a table for people, a record for programs, curves to look at.
 
+use std::ops::Range;
+use std::path::Path;
+
 use anyhow::Result;
 
 use crate::campaign::accuracy::{self, Accuracy};
 use crate::campaign::calibration::{self, Calibrated};
-use crate::campaign::ensemble::Measure;
+use crate::campaign::ensemble::{Campaign, Measure, Measured};
+use crate::campaign::rows::RowWriter;
 use crate::cli::campaign_flags::Campaigns;
 use crate::cli::format::Format;
-use crate::cli::passage::Passage;
+use crate::cli::rows_file::RowsFile;
 use crate::output::file::json;
 use crate::report::curves::Curves;
 use crate::report::{campaign as tables, comparison};
-
-/// Where rows come from and where they go, whatever is measured.
-pub(crate) trait Opening {
-    /// Opens the files.
-    fn open<M: Measure>(self, measure: &M) -> Result<Passage<'_, M>>;
-}
 
 /// What campaigns come to.
 pub(crate) struct Told {
@@ -26,16 +24,19 @@ pub(crate) struct Told {
     pub(crate) curves: Curves,
 }
 
-/// Sends the rows on their way, by what labels that are true or that may err can show, and what came of it.
-pub(crate) fn tell(campaigns: &Campaigns, opening: impl Opening, format: Format) -> Result<Told> {
-    let each = || campaigns.of_each.iter().enumerate();
+/// Which fields are flown, and where their rows go.
+#[derive(Clone)]
+pub(crate) struct Flown<'a> {
+    pub(crate) fields: Range<u64>,
+    pub(crate) csv: Option<&'a Path>,
+}
+
+/// Flies them, by what labels that are true or that may err can show, and what came of it.
+pub(crate) fn tell(campaigns: &Campaigns, flown: &Flown, format: Format) -> Result<Told> {
     let is_single = !campaigns.are_compared;
     let (table, record, curves) = if campaigns.labels_err {
-        let mut passage = opening.open(&Calibrated)?;
-        let summaries = each()
-            .map(|(k, it)| calibration::Summary::of(it, passage.rows(k, it)?))
-            .collect::<Result<Vec<_>>>()?;
-        passage.complete()?;
+        let summaries =
+            fly(campaigns, &Calibrated, flown, |it, rows| calibration::Summary::of(it, rows))?;
         let curves = Curves::of_calibration(&summaries);
         match &summaries[..] {
             [single] if is_single => (tables::calibration(single), json(single), curves),
@@ -44,11 +45,8 @@ pub(crate) fn tell(campaigns: &Campaigns, opening: impl Opening, format: Format)
     } else {
         let by_label = campaigns.of_each.iter().any(|it| it.asking.labels.is_some());
         let measure = Accuracy { by_label };
-        let mut passage = opening.open(&measure)?;
-        let summaries = each()
-            .map(|(k, it)| accuracy::Summary::of(it, passage.rows(k, it)?))
-            .collect::<Result<Vec<_>>>()?;
-        passage.complete()?;
+        let summaries =
+            fly(campaigns, &measure, flown, |it, rows| accuracy::Summary::of(it, rows))?;
         let curves = Curves::of_accuracy(&summaries);
         match &summaries[..] {
             [single] if is_single => (tables::accuracy(single), json(single), curves),
@@ -60,4 +58,28 @@ pub(crate) fn tell(campaigns: &Campaigns, opening: impl Opening, format: Format)
         Format::Json => record,
     };
     Ok(Told { text, curves })
+}
+
+/// Flies the fields by each planner, and sums up its rows, which are written as they pass.
+fn fly<M: Measure, S>(
+    campaigns: &Campaigns,
+    measure: &M,
+    Flown { fields, csv }: &Flown,
+    sum: impl Fn(&Campaign, &mut dyn Iterator<Item = Result<Measured<M::Checkpoint>>>) -> Result<S>,
+) -> Result<Vec<S>> {
+    let planners = campaigns.planners();
+    let header = planners.header::<M::Checkpoint>()?;
+    let file = csv.map(|path| RowsFile::open(path, &header)).transpose()?;
+    let mut writer = file.map(|file| RowWriter::new(file, &planners));
+    let mut summaries = Vec::new();
+    for (number, campaign) in campaigns.of_each.iter().enumerate() {
+        let mut rows = campaign.fly(measure, fields.clone())?.map(|row| {
+            let row = row?;
+            writer.as_mut().map_or(Ok(()), |it| it.write(number, &row))?;
+            Ok(row)
+        });
+        summaries.push(sum(campaign, &mut rows)?);
+    }
+    writer.map_or(Ok(()), |writer| writer.into_inner()?.complete())?;
+    Ok(summaries)
 }

@@ -43,11 +43,12 @@ impl Logbook {
     ) -> Result<Self> {
         let place = place_for(path)?;
         let header = trace::start(start);
-        let begin = Begin { holds: "steps", header: &header, record: None, resume: true };
-        let mut partial = Partial::open(path, &place, begin)?;
+        let goes_on = "the same command with --resume goes on with them";
+        let begin = Begin { holds: "steps", goes_on, resume: true };
+        let mut partial = Partial::open(path, &place, &header, begin)?;
         let mut text = Vec::new();
         let name = partial.name().to_owned();
-        partial.reader(u64::MAX)?.read_to_end(&mut text).with_context(|| name.clone())?;
+        partial.reader()?.read_to_end(&mut text).with_context(|| name.clone())?;
         let mut lines = text.split_inclusive(|byte| *byte == b'\n').zip(1..);
         let first = lines.next().map_or(&[][..], |(line, _)| line);
         begins(first, &header).with_context(|| format!("{name}:1"))?;
@@ -81,7 +82,7 @@ impl Logbook {
     pub fn complete(mut self, end: &End) -> Result<()> {
         let written = self.partial.write_all(trace::end(end).as_bytes());
         written.with_context(|| self.partial.name().to_owned())?;
-        self.partial.complete(|_, _| None)
+        self.partial.complete()
     }
 
     /// Where to find what is finished.

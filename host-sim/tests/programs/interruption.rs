@@ -63,8 +63,8 @@ fn leaves_rows(campaign: Child, folder: &Path, signal: &str, number: i32) {
     let (status, message) = ended(campaign, signal);
     assert_eq!(status, Some(128 + number), "{signal}");
     assert!(message.starts_with("stopped: ") && message.lines().count() == 1, "{message}");
-    assert!(message.contains("c.csv.partial") && message.contains("--resume"), "{message}");
-    assert_eq!(names(folder), ["c.csv.partial", "c.csv.partial.json"]);
+    assert!(message.contains("c.csv.partial") && message.contains("--from"), "{message}");
+    assert_eq!(names(folder), ["c.csv.partial"]);
 }
 
 #[test]

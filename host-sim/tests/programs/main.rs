@@ -13,7 +13,6 @@ use tempfile::TempDir;
 mod figures;
 mod help;
 mod interruption;
-mod resuming;
 mod tables;
 mod weighing;
 

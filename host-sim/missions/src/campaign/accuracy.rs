@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use planner_core::dynamics::Dynamics as _;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::campaign::course::Tally;
-use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress};
-use crate::campaign::sorting::{Sorting, Value};
+use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress};
+use crate::campaign::sorting::{Value, sorted};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -27,7 +27,7 @@ pub struct Accuracy {
 }
 
 /// The state of knowledge after some steps of one mission.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Checkpoint {
     field: u64,
     step: u32,
@@ -98,20 +98,9 @@ pub struct Summary {
     pub actions: u64,
 }
 
-impl ensemble::Checkpoint for Checkpoint {
-    fn field(&self) -> u64 {
-        self.field
-    }
-
-    fn stage(&self) -> u32 {
-        self.step
-    }
-}
-
 impl Measure for Accuracy {
     type Checkpoint = Checkpoint;
 
-    const IS_WHOLE: bool = true;
     const WANTS_EXPECTED: bool = false;
 
     fn stages(&self, steps: u32) -> Vec<u32> {
@@ -181,27 +170,27 @@ struct Sums {
 }
 
 impl Summary {
-    /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
+    /// The results of a campaign, from its rows in the order of the fields.
     ///
     /// # Errors
-    /// The first error of a row, or a temporary file that cannot be written.
+    /// The first error of a row.
     pub fn of(
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
     ) -> Result<Self> {
         let (mut stages, mut tally) = (BTreeMap::<u32, Sums>::new(), Tally::default());
-        let mut sorting = Sorting::default();
+        let mut values = Vec::new();
         for row in rows {
             let Measured { checkpoint, course } = row?;
             stages.entry(checkpoint.step).or_default().add(&checkpoint);
             for (slot, pick) in (SPREAD.len() as u32 * checkpoint.step..).zip(SPREAD) {
-                sorting.push(Value::new(slot, pick(&checkpoint), false))?;
+                values.push(Value { slot, number: pick(&checkpoint), is_marked: false });
             }
             if checkpoint.step == campaign.length() {
                 tally.add(&course);
             }
         }
-        let mut sorted = sorting.sorted()?;
+        let mut sorted = sorted(values);
         let rows = stages.iter().map(|(&step, sums)| {
             let mut spreads = [Spread::default(); SPREAD.len()];
             for spread in &mut spreads {

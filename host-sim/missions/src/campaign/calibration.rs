@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::{AnyReliability, Line, PosteriorView, Prior, UnknownReliability};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::campaign::drawn;
-use crate::campaign::ensemble::{self, Campaign, Measure, Measured, Progress, readings_told};
-use crate::campaign::sorting::{Sorted, Sorting, Value};
+use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress, readings_told};
+use crate::campaign::sorting::{Sorted, Value, sorted};
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -39,7 +39,7 @@ struct Statement {
 
 /// The state of knowledge after some labels of one mission. Statements are by the area prior and by the paper's.
 #[allow(clippy::struct_excessive_bools)] // columns of a row, which has no nesting
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Checkpoint {
     field: u64,
     labels: u32,
@@ -136,16 +136,6 @@ pub struct Summary {
     pub rows: Vec<Row>,
 }
 
-impl ensemble::Checkpoint for Checkpoint {
-    fn field(&self) -> u64 {
-        self.field
-    }
-
-    fn stage(&self) -> u32 {
-        self.labels
-    }
-}
-
 impl Checkpoint {
     /// By the area prior and by the paper's.
     fn statements(&self) -> [Statement; 2] {
@@ -169,7 +159,6 @@ impl Checkpoint {
 impl Measure for Calibrated {
     type Checkpoint = Checkpoint;
 
-    const IS_WHOLE: bool = false;
     const WANTS_EXPECTED: bool = true;
 
     fn stages(&self, _: u32) -> Vec<u32> {
@@ -262,10 +251,10 @@ struct StatementSums {
 const SORTED: u32 = 4;
 
 impl Summary {
-    /// The results of a campaign, from its rows in the order of the fields. Memory holds few rows at a time.
+    /// The results of a campaign, from its rows in the order of the fields.
     ///
     /// # Errors
-    /// The first error of a row, or a temporary file that cannot be written.
+    /// The first error of a row.
     pub fn of(
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
@@ -278,7 +267,7 @@ impl Summary {
         let p = drawn_from.map_or(noise.map_or(1.0, |noise| noise.p), UnknownReliability::mean);
         let limit = drawn_from.map_or(limit(p), |prior| drawn::mean(prior, limit));
         let p_told = campaign.p_told.map(PTold::from);
-        let (mut stages, mut sorting) = (BTreeMap::<u32, Sums>::new(), Sorting::default());
+        let (mut stages, mut values) = (BTreeMap::<u32, Sums>::new(), Vec::new());
         for row in rows {
             let Measured { checkpoint, .. } = row?;
             stages.entry(checkpoint.labels).or_default().add(&checkpoint);
@@ -290,10 +279,10 @@ impl Summary {
                 (area.best_probability, area.best_holds),
                 (paper.best_probability, paper.best_holds),
             ]) {
-                sorting.push(Value::new(slot, value, mark))?;
+                values.push(Value { slot, number: value, is_marked: mark });
             }
         }
-        let mut sorted = sorting.sorted()?;
+        let mut sorted = sorted(values);
         // Labels on the way carry bits as well, and are not counted. And planners that are told another reliability count
         // bits that labels do not carry. Then there are no shares.
         let readings = campaign.several_readings();
@@ -374,31 +363,26 @@ impl Sums {
             control_cost: mean(self.control_cost),
             metres: mean(self.metres),
             calibration: [
-                calibration(self.by_prior[0], self.missions, sorted)?,
-                calibration(self.by_prior[1], self.missions, sorted)?,
+                calibration(self.by_prior[0], self.missions, sorted),
+                calibration(self.by_prior[1], self.missions, sorted),
             ],
         })
     }
 }
 
 /// The calibration by one prior, from its sums and the next `missions` sorted probabilities.
-fn calibration(sums: StatementSums, missions: u64, sorted: &mut Sorted) -> Result<Calibration> {
+fn calibration(sums: StatementSums, missions: u64, sorted: &mut Sorted) -> Calibration {
     let size = missions.div_ceil(BINS);
     let mut best = Vec::new();
     for start in (0..missions).step_by(size as usize) {
         let n = size.min(missions - start);
         let (mut stated, mut holds) = (0.0, 0.0);
         for value in sorted.take(n as usize) {
-            let value = value?;
-            stated += value.value();
+            stated += value.number;
             holds += share(value.is_marked);
         }
         best.push((n, stated / n as f64, holds / n as f64));
     }
     let n = missions as f64;
-    Ok(Calibration {
-        coverage: sums.credible_holds / n,
-        stated: sums.credible_probability / n,
-        best,
-    })
+    Calibration { coverage: sums.credible_holds / n, stated: sums.credible_probability / n, best }
 }

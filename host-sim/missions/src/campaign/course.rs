@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use planner_core::Step;
 use planner_core::search::recovery::Recovery;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::mission::results::recovery_name;
 
 /// How a mission has gone so far. Every row of a campaign ends with it.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Course {
     /// Why the mission ended: the same in all its rows.
     pub ended: String,

@@ -11,7 +11,6 @@ use planner_core::{
 };
 use rayon::prelude::*;
 use serde::Serialize;
-use serde::de::DeserializeOwned;
 
 use crate::campaign::course::Course;
 use crate::campaign::drawn;
@@ -100,10 +99,7 @@ pub struct Progress {
 /// What a campaign measures. A *stage* is a number of steps or labels after which missions are compared.
 pub trait Measure: Sync {
     /// What is taken down at some stage of a mission.
-    type Checkpoint: Checkpoint;
-
-    /// Whether each mission has a row at each stage, also at those that it did not reach.
-    const IS_WHOLE: bool;
+    type Checkpoint: Clone + Debug + Default + Send + Serialize;
 
     /// Whether it wants [`Progress::expected_bits`].
     const WANTS_EXPECTED: bool;
@@ -125,15 +121,6 @@ pub trait Measure: Sync {
     /// The progress that counts for a mission at a stage that it did not reach, as it ended before; `None` if it does
     /// not count there.
     fn held(&self, end: &Progress, stage: u32) -> Option<Progress>;
-}
-
-/// What is taken down at some stage of a mission.
-pub trait Checkpoint: Clone + Debug + Default + Send + Serialize + DeserializeOwned {
-    /// The number of the mission's field.
-    fn field(&self) -> u64;
-
-    /// The stage.
-    fn stage(&self) -> u32;
 }
 
 /// A row: what was known at some stage of a mission, and how it had gone so far.
@@ -176,10 +163,10 @@ impl Campaign {
     /// # Errors
     /// As [`fly`](Self::fly).
     pub fn run<'a, M: Measure>(&'a self, measure: &'a M) -> Result<Flight<'a, M>> {
-        self.fly(measure, 0..self.fields, 0)
+        self.fly(measure, 0..self.fields)
     }
 
-    /// Flies the fields of a block from the field `from` on.
+    /// Flies a block of fields.
     ///
     /// # Errors
     /// When the vehicle cannot move in the standard area.
@@ -187,20 +174,10 @@ impl Campaign {
         &'a self,
         measure: &'a M,
         block: Range<u64>,
-        from: u64,
     ) -> Result<Flight<'a, M>> {
         self.check()?;
         let bar = progress(block.end - block.start, "fields")?.with_message(self.algorithm.title());
-        // Missions flown before say nothing about the present speed.
-        bar.set_position(from - block.start);
-        bar.reset_eta();
-        Ok(Flight {
-            campaign: self,
-            measure,
-            left: from..block.end,
-            flown: Vec::new().into_iter(),
-            bar,
-        })
+        Ok(Flight { campaign: self, measure, left: block, flown: Vec::new().into_iter(), bar })
     }
 
     /// The readings of a motion, if there are several.
@@ -243,12 +220,12 @@ impl Campaign {
     }
 
     /// The stages at which its missions have rows.
-    pub(super) fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
+    fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
         if self.every { (1..=self.length()).collect() } else { measure.stages(self.length()) }
     }
 
     /// The rows of a field.
-    pub(super) fn measured<M: Measure>(
+    fn measured<M: Measure>(
         &self,
         measure: &M,
         number: u64,

@@ -2,17 +2,14 @@
 //! of the rows.
 
 pub mod accuracy;
-pub mod behaviour;
 pub mod calibration;
 pub mod course;
 pub mod drawn;
 pub mod ensemble;
 pub mod field_record;
 pub mod fronts;
-pub mod order;
 pub mod patches;
 pub mod rows;
-pub mod shard;
 mod sorting;
 pub mod spread;
 pub mod standard_field;

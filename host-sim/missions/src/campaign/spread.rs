@@ -23,7 +23,7 @@ impl Spread {
         let ranks = [5, 9, 10].map(|tenths| (n * tenths).div_ceil(10).max(1));
         let mut spread = [0.0; 3];
         for rank in 1..=n {
-            let value = values.next().context("a value is missing")??.value();
+            let value = values.next().context("a value is missing")?.number;
             for (figure, of) in spread.iter_mut().zip(ranks) {
                 if rank == of {
                     *figure = value;

@@ -33,7 +33,7 @@ const EXPECTED: [(&str, &str); 83] = [
     ("errors.motion", METRES_OFF),
     ("errors.position", METRES_OFF),
     ("errors.turn", RADIANS_OFF),
-    ("fields", "a whole number, 1 to 1000000000"),
+    ("fields", "a whole number, 1 to 1000000"),
     ("from", "the number of a label, 1 or more"),
     ("front", "a table, { watch = 20.0 }"),
     ("front.radius", "metres, 0.1 to 1000000, or inf for a straight line"),

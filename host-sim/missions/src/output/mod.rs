@@ -1,11 +1,9 @@
 //! Output: files that appear whole or not at all, whatever interrupts the program, and messages beside them.
 
-pub mod checksum;
 pub mod ending;
 pub mod file;
 pub mod interruption;
 pub mod kind;
-mod ledger;
 pub mod notes;
 pub mod partial;
 pub mod place;

@@ -1,21 +1,15 @@
-//! A file that grows beside its place, perhaps for hours. It outlives an interruption, and a later run can continue it.
+//! A file that grows beside its place, perhaps for hours. It outlives an interruption, and a later run may continue it.
 //! When it is complete, it is moved to its place.
-//!
-//! If the file does not show by itself which work it belongs to, a record beside it does. So nobody continues the file
-//! of another task. The record also contains checksums (`ledger`), so nobody continues a file that was changed. The
-//! record is written before the file, and removed when the file is complete.
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, bail};
 
-use crate::output::checksum::Checksum;
-use crate::output::file::{Output, hand_on_permissions, prepare, refusal};
+use crate::output::file::{hand_on_permissions, refusal};
 use crate::output::interruption::unfinished;
-use crate::output::ledger::Ledger;
 use crate::output::place::Place;
 
 /// A file that is not complete. When this is dropped the file stays, unless this run created it and wrote only a
@@ -24,88 +18,45 @@ use crate::output::place::Place;
 pub struct Partial {
     place: PathBuf,
     path: PathBuf,
-    record: Option<PathBuf>,
-    ledger: Option<Ledger>,
     file: File,
-    /// How many of its bytes are as they were written.
-    counted: u64,
     /// As the file's user names it.
     name: String,
-    /// What it holds.
-    holds: &'static str,
+    begin: Begin,
     is_worth_keeping: bool,
 }
 
 /// What is to be written.
-#[derive(Clone, Copy)]
-pub struct Begin<'a> {
+#[derive(Clone, Copy, Debug)]
+pub struct Begin {
     /// What it holds, in the plural: rows, steps.
     pub holds: &'static str,
-    /// What it begins with.
-    pub header: &'a str,
-    /// The record of the work, if the file does not show by itself which work it belongs to.
-    pub record: Option<Record<'a>>,
+    /// What goes on after an interruption.
+    pub goes_on: &'static str,
     /// Whether to continue an existing file.
     pub resume: bool,
 }
 
-/// The record of the work, which stands beside the file.
-#[derive(Clone, Copy)]
-pub struct Record<'a> {
-    /// The record.
-    pub text: &'a str,
-    /// Checks an existing record.
-    pub check: &'a dyn Fn(&str) -> Result<()>,
-}
-
-/// Checks an existing file by its record and checksums, and returns how many of its bytes are as they were written.
-fn judge(
-    ledger: &Ledger,
-    check: &dyn Fn(&str) -> Result<()>,
-    path: &Path,
-    name: &str,
-) -> Result<u64> {
-    let anew = || format!("remove {name} and {name}.json to begin anew");
-    let record = ledger.record().with_context(|| format!("{name}.json"))?;
-    let Some(record) = record else {
-        bail!("{name}.json: found a record that was cut off, expected a whole one: {}", anew());
-    };
-    let judged = check(&record).and_then(|()| ledger.verify(path));
-    judged.map_err(|why| anyhow!("{name}: {why:#}: {}", anew()))
-}
-
-/// A path with something after it.
-pub fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
-    let mut path = OsString::from(path);
-    path.push(suffix);
-    path.into()
-}
-
 impl Partial {
-    /// Begins a file, or opens an existing one to continue it.
+    /// Begins a file with its header, or opens an existing one to continue it.
     ///
     /// # Errors
     /// Names the file if its finished work exists, or if it exists although none is to be continued. Also if another program is writing it, or if it
     /// cannot be written.
-    pub fn open(path: &Path, place: &Place, begin: Begin) -> Result<Self> {
+    pub fn open(path: &Path, place: &Place, header: &str, begin: Begin) -> Result<Self> {
         check_free(path, place, begin.holds)?;
-        let name = with_suffix(path, ".partial").display().to_string();
-        let path = with_suffix(place.path(), ".partial");
-        let record = begin.record.map(|_| with_suffix(place.path(), ".partial.json"));
+        let beside = |path: &Path| {
+            let mut path = OsString::from(path);
+            path.push(".partial");
+            PathBuf::from(path)
+        };
+        let name = beside(path).display().to_string();
+        let path = beside(place.path());
         let is_there = path.try_exists().with_context(|| name.clone())?;
         if is_there && !begin.resume {
+            let Begin { holds, goes_on, .. } = begin;
             bail!(
-                "{name}: found {} of a campaign that was stopped, expected --resume to go on with them, or that \
-                 they are removed",
-                begin.holds
-            );
-        }
-        let mut ledger = None;
-        if let (Some(Record { text, .. }), Some(record), false) = (begin.record, &record, is_there)
-        {
-            let begun = Ledger::begin(record, text);
-            ledger = Some(
-                begun.map_err(|error| refusal(&with_suffix(Path::new(&name), ".json"), &error))?,
+                "{name}: found {holds} of a command that was stopped, expected none: remove the file or give it another \
+                 name; {goes_on}"
             );
         }
         let mut options = OpenOptions::new();
@@ -114,39 +65,25 @@ impl Partial {
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             bail!("{name}: found another program writing it, expected none");
         }
-        let mut counted = file.metadata().with_context(|| name.clone())?.len();
-        if let (Some(Record { check, .. }), Some(record), true) = (begin.record, &record, is_there)
-        {
-            let expected = || {
-                format!("{name}.json: expected the record of {name}: remove {name} to begin anew")
-            };
-            let found = Ledger::open(record).with_context(expected)?;
-            counted = judge(&found, check, &path, &name)?;
-            ledger = Some(found);
-        }
-        let (place, holds) = (place.path().to_owned(), begin.holds);
-        let is_worth_keeping = is_there;
-        let mut partial =
-            Self { place, path, record, ledger, file, counted, name, holds, is_worth_keeping };
-        partial.begin(begin.header).with_context(|| partial.name.clone())?;
+        let place = place.path().to_owned();
+        let mut partial = Self { place, path, file, name, begin, is_worth_keeping: is_there };
+        partial.begin(header).with_context(|| partial.name.clone())?;
         Ok(partial)
     }
 
     /// Writes the header if it is not there in full.
     fn begin(&mut self, header: &str) -> Result<()> {
-        if self.counted < header.len() as u64 {
+        if self.file.metadata()?.len() < header.len() as u64 {
             let mut found = Vec::new();
-            File::open(&self.path)?.take(header.len() as u64).read_to_end(&mut found)?;
+            self.reader()?.read_to_end(&mut found)?;
             if !header.as_bytes().starts_with(&found) {
                 bail!(
                     "found something else than {} under their header, expected them: remove the file to begin anew",
-                    self.holds
+                    self.begin.holds
                 );
             }
             self.cut(0)?;
             self.file.write_all(header.as_bytes())?;
-            self.note(header.as_bytes())?;
-            self.counted = header.len() as u64;
         }
         Ok(())
     }
@@ -156,12 +93,12 @@ impl Partial {
         &self.name
     }
 
-    /// Reads the file from its start: this many bytes, but none that may have changed.
+    /// Reads the file from its start.
     ///
     /// # Errors
     /// When it cannot be opened.
-    pub fn reader(&self, bytes: u64) -> io::Result<io::Take<File>> {
-        Ok(File::open(&self.path)?.take(bytes.min(self.counted)))
+    pub fn reader(&self) -> io::Result<File> {
+        File::open(&self.path)
     }
 
     /// Cuts the file to this many bytes.
@@ -169,13 +106,7 @@ impl Partial {
     /// # Errors
     /// When it cannot be cut.
     pub fn cut(&mut self, bytes: u64) -> io::Result<()> {
-        self.file.set_len(bytes)?;
-        self.ledger.as_mut().map_or(Ok(()), |it| it.cut(&self.path, bytes))
-    }
-
-    /// Notes that the file has grown.
-    fn note(&mut self, bytes: &[u8]) -> io::Result<()> {
-        self.ledger.as_mut().map_or(Ok(()), |it| it.grown(bytes))
+        self.file.set_len(bytes)
     }
 
     /// From now on the message at an interruption names this file.
@@ -185,30 +116,20 @@ impl Partial {
 
     /// Where to find what is finished.
     pub fn farewell(&self) -> String {
-        let Self { holds, name, .. } = self;
-        format!("finished {holds} are in {name}; the same command with --resume goes on with them")
+        let Self { name, begin: Begin { holds, goes_on, .. }, .. } = self;
+        format!("finished {holds} are in {name}; {goes_on}")
     }
 
-    /// Moves it to its place. `beside` makes the record that stays beside it from its length and checksum.
+    /// Moves it to its place.
     ///
     /// # Errors
-    /// Names the file that could not be written or moved.
-    pub fn complete(
-        &self,
-        beside: impl FnOnce(u64, Option<Checksum>) -> Option<String>,
-    ) -> Result<()> {
+    /// Names the file that could not be moved.
+    pub fn complete(&self) -> Result<()> {
         let named = || self.name.clone();
-        let bytes = self.file.metadata().with_context(named)?.len();
-        if let Some(record) = beside(bytes, self.ledger.as_ref().map(Ledger::checksum)) {
-            let path = with_suffix(&self.place, ".json");
-            let [output] = prepare(&[], [("the record", Some(&path))])?;
-            output.map_or(Ok(()), |it: Output| it.write(record))?;
-        }
         hand_on_permissions(&self.path, &self.place).with_context(named)?;
         let mut unfinished = unfinished();
         unfinished.farewell = None;
-        fs::rename(&self.path, &self.place).with_context(named)?;
-        self.record.as_ref().map_or(Ok(()), fs::remove_file).with_context(named)
+        fs::rename(&self.path, &self.place).with_context(named)
     }
 }
 
@@ -216,7 +137,7 @@ impl Partial {
 ///
 /// # Errors
 /// Names the file that is there.
-pub fn check_free(path: &Path, place: &Place, holds: &str) -> Result<()> {
+fn check_free(path: &Path, place: &Place, holds: &str) -> Result<()> {
     if place.is_stream() || fs::metadata(place.path()).is_ok_and(|it| it.len() == 0) {
         return Ok(());
     }
@@ -232,9 +153,7 @@ pub fn check_free(path: &Path, place: &Place, holds: &str) -> Result<()> {
 impl Write for Partial {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.is_worth_keeping = true;
-        let written = self.file.write(bytes)?;
-        self.note(&bytes[..written])?;
-        Ok(written)
+        self.file.write(bytes)
     }
 
     fn flush(&mut self) -> io::Result<()> {
@@ -245,9 +164,8 @@ impl Write for Partial {
 impl Drop for Partial {
     fn drop(&mut self) {
         if !self.is_worth_keeping {
-            // Errors are ignored: the caller already reports another one.
+            // An error is ignored: the caller already reports another one.
             let _ = fs::remove_file(&self.path);
-            let _ = self.record.as_ref().map_or(Ok(()), fs::remove_file);
         }
         // Closing is not enough: a child that another thread starts holds the file until it executes. If this fails,
         // the lock ends then.

@@ -5,12 +5,7 @@ pub(crate) fn in_order(value: f64) -> i64 {
     flipped(value.to_bits() as i64)
 }
 
-/// The number of an integer.
-pub(crate) fn number(order: i64) -> f64 {
-    f64::from_bits(flipped(order) as u64)
-}
-
-/// Negative numbers have the sign bit, and grow with the others the wrong way. It is its own inverse.
+/// Negative numbers have the sign bit, and grow with the others the wrong way.
 fn flipped(bits: i64) -> i64 {
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
