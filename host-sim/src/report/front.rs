@@ -54,6 +54,12 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         return "The front was not found.\n".to_owned();
     };
     let mut text = match (state, lost) {
+        (State::Closed, _) if record.closed > 1 => {
+            format!(
+                "The first front was found at {unit} {found}, and the robot went all round {} of them.\n",
+                record.closed
+            )
+        }
         (State::Closed, _) => {
             format!(
                 "The front is closed: it was found at {unit} {found}, and the robot went all round it.\n"

@@ -150,21 +150,57 @@ pub(crate) fn are_apart_beside(a: &[Site], b: &[Site], by: u32) -> bool {
 /// The box around a hull, by its least and its greatest coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(from = "[i32; 4]", into = "[i32; 4]"))]
 pub(crate) struct Extent {
     low: Vector,
     high: Vector,
 }
 
+impl From<[i32; 4]> for Extent {
+    fn from([x, z, right, top]: [i32; 4]) -> Self {
+        Self { low: Vector { x, z }, high: Vector { x: right, z: top } }
+    }
+}
+
+impl From<Extent> for [i32; 4] {
+    fn from(Extent { low, high }: Extent) -> Self {
+        [low.x, low.z, high.x, high.z]
+    }
+}
+
 impl Extent {
+    /// Of nothing.
+    pub(crate) const NONE: Self = Self {
+        low: Vector { x: i32::MAX, z: i32::MAX },
+        high: Vector { x: i32::MIN, z: i32::MIN },
+    };
+
     pub(crate) fn of(hull: &[Site]) -> Self {
-        let none = Self {
-            low: Vector { x: i32::MAX, z: i32::MAX },
-            high: Vector { x: i32::MIN, z: i32::MIN },
-        };
-        hull.iter().fold(none, |Self { low, high }, q| Self {
-            low: Vector { x: low.x.min(q.x()), z: low.z.min(q.z()) },
-            high: Vector { x: high.x.max(q.x()), z: high.z.max(q.z()) },
-        })
+        hull.iter().fold(Self::NONE, |all, it| all.with(*it))
+    }
+
+    /// The same with a site.
+    pub(crate) fn with(self, site: Site) -> Self {
+        let Self { low, high } = self;
+        Self {
+            low: Vector { x: low.x.min(site.x()), z: low.z.min(site.z()) },
+            high: Vector { x: high.x.max(site.x()), z: high.z.max(site.z()) },
+        }
+    }
+
+    /// The same and so much ground about it.
+    pub(crate) fn grown(self, by: i32) -> Self {
+        let Self { low, high } = self;
+        let [x, z] = [low.x.saturating_sub(by), low.z.saturating_sub(by)];
+        let high = Vector { x: high.x.saturating_add(by), z: high.z.saturating_add(by) };
+        Self { low: Vector { x, z }, high }
+    }
+
+    /// Whether it holds a site.
+    pub(crate) fn holds(self, site: Site) -> bool {
+        (self.low.x..=self.high.x).contains(&site.x())
+            && (self.low.z..=self.high.z).contains(&site.z())
     }
 
     /// Whether a box is further away than this: then the hull in it is.

@@ -4,6 +4,7 @@
 
 use crate::belief::front::Waist;
 use crate::geometry::heading::Heading;
+use crate::geometry::hull::Extent;
 use crate::motion::dynamics::Pose;
 
 /// A front is closed when it has turned by this, three quarters of a turn, and is back; in units of 2^-32 turns.
@@ -13,7 +14,7 @@ const TURNED: i64 = 3 << 30;
 const BACK: f32 = 1.0;
 
 /// The way along a front since it was found.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Lap {
@@ -32,6 +33,8 @@ pub struct Lap {
     is_back: bool,
     /// Whether later labels have told better where that is.
     is_settled: bool,
+    /// Where it was found so far.
+    extent: Extent,
 }
 
 impl Lap {
@@ -45,6 +48,7 @@ impl Lap {
         borders: 0,
         is_back: false,
         is_settled: false,
+        extent: Extent::NONE,
     };
 
     /// Whether a mission can have turned so far.
@@ -85,6 +89,16 @@ impl Lap {
         self.borders = self.borders.saturating_add(1);
     }
 
+    /// Where the front was found.
+    pub(crate) const fn extent(&self) -> Extent {
+        self.extent
+    }
+
+    /// Along the next front it goes as it faced at the start, too.
+    pub(crate) const fn begin_again(&mut self) {
+        *self = Self { faced: self.faced, ..Self::NONE };
+    }
+
     /// Whether the robot has been all around.
     pub(crate) const fn is_closed(&self) -> bool {
         self.is_closed
@@ -100,6 +114,7 @@ impl Lap {
     pub(crate) fn observe(&mut self, found: Option<Waist>, (reach, moved): (f32, f32)) {
         self.steps = self.steps.saturating_add(1);
         let Some(waist) = found else { return };
+        self.extent = self.extent.with(waist.site);
         let Some((begun, last)) = &mut self.begun else {
             (self.begun, self.steps) = (Some((waist, waist.heading)), 0);
             return;

@@ -12,9 +12,10 @@
 //! - **Follow**: the planner knows the boundary, or was told about where it is.
 
 use crate::belief::curve::nearest_pair;
-use crate::belief::field::{Field, FieldMemory, Seeking, Sought};
+use crate::belief::field::{Field, FieldMemory, MOST_PATCHES, Seeking, Sought};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, distance, sqrt};
+use crate::geometry::hull::Extent;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::planner::one_label::OneLabel;
@@ -67,7 +68,11 @@ pub struct QuestMemory {
     heard: Option<Site>,
     news: u8,
     approach: Approach,
+    mapped: Mapped,
 }
+
+/// Where patches lie that are mapped.
+type Mapped = heapless::Vec<Extent, { MOST_PATCHES as usize }, u8>;
 
 /// How the robot comes to the corner that it goes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,6 +115,7 @@ pub(crate) struct Quest {
     /// Labels since the search began again.
     news: u8,
     approach: Approach,
+    mapped: Mapped,
 }
 
 /// About where a boundary is.
@@ -136,6 +142,7 @@ impl Quest {
         heard: None,
         news: 0,
         approach: Approach::NONE,
+        mapped: Mapped::new(),
     };
 
     /// Begins in an area with labels that are true with probability `p`. A straight boundary has no `patches`. The planner
@@ -154,6 +161,7 @@ impl Quest {
         begun.map_err(|[least, most]| SetupError::Patch { least, most })?;
         (self.route, self.heard, self.news) = (Route::NONE, None, 0);
         self.approach = Approach::NONE;
+        self.mapped.clear();
         (self.is_fresh, self.is_stuck) = (true, false);
         self.phase = if is_near { Phase::Follow } else { Phase::Search };
         self.sought = self.field.sought();
@@ -177,9 +185,13 @@ impl Quest {
         self.sought = self.field.sought();
     }
 
-    /// Takes in a label.
+    /// Takes in a label. Along a front, and where a patch is mapped, it tells nothing of other patches.
     pub(crate) fn hear(&mut self, site: Site, label: Label) {
-        self.field.observe(site, label);
+        if self.phase == Phase::Follow {
+            self.field.memory.recent.push(site, label);
+        } else if !self.mapped.iter().any(|it| it.holds(site)) {
+            self.field.observe(site, label);
+        }
         self.heard = Some(site);
         self.news = self.news.saturating_add(1);
     }
@@ -266,10 +278,37 @@ impl Quest {
 
     /// The boundary is not where it was: the search begins again, and forgets all but the last labels.
     pub(crate) fn lose<G: Workspace>(&mut self, area: &G) {
-        self.field.forget(area);
+        self.field.forget(area, &self.mapped);
         self.search_on();
         self.is_fresh = true;
         self.is_stuck = false;
+    }
+
+    /// A boundary is found: the last labels within so many lattice units of a place tell nothing of others.
+    pub(crate) fn follow(&mut self, place: Site, within: f32) {
+        let recent = self.field.memory.recent;
+        for it in recent.iter().filter(|it| distance(it.site - place) <= within) {
+            self.field.take_back(it.site, it.label);
+        }
+        self.phase = Phase::Follow;
+    }
+
+    /// A patch is mapped, in this extent. Whether another is sought: the search goes on beside it.
+    pub(crate) fn map(&mut self, extent: Extent) -> bool {
+        let most = usize::from(self.field.seeking().most_patches());
+        if self.mapped.len() + 1 >= most || self.mapped.push(extent).is_err() {
+            return false;
+        }
+        self.field.leave_out(extent);
+        (self.route, self.approach) = (Route::NONE, Approach::NONE);
+        self.search_on();
+        (self.is_fresh, self.is_stuck) = (true, false);
+        true
+    }
+
+    /// Whether a patch was mapped, and another is sought.
+    pub(crate) fn has_mapped(&self) -> bool {
+        !self.mapped.is_empty()
     }
 
     /// The label that all of the area has, if it most likely has one.
@@ -352,18 +391,24 @@ impl Quest {
         let Self { ref field, ref route, phase, is_fresh, is_stuck, heard, news, approach, .. } =
             *self;
         let (field, route) = (field.memory.clone(), route.clone());
-        QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach }
+        let mut mapped = Mapped::new();
+        for it in &self.mapped {
+            let _ = mapped.push(*it); // there is room
+        }
+        QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach, mapped }
     }
 
     /// Goes on from there. Whether a search of the same area can have stored it.
     pub(crate) fn recall(&mut self, memory: &QuestMemory) -> bool {
-        let QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach } =
+        let QuestMemory { field, route, phase, is_fresh, is_stuck, heard, news, approach, mapped } =
             memory.clone();
+        let is_few = mapped.len() < usize::from(self.field.seeking().most_patches());
         let is_valid = route.is_valid(self.field.layout.half);
         (self.field.memory, self.route, self.phase) = (field, route, phase);
         (self.is_fresh, self.is_stuck) = (is_fresh, is_stuck);
         (self.heard, self.news, self.approach) = (heard, news, approach);
+        self.mapped = mapped;
         self.sought = self.field.sought();
-        is_valid
+        is_valid && is_few
     }
 }

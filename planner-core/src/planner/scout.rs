@@ -116,8 +116,9 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
 
     /// What tells the mission from others, with what tells its belief.
     pub(crate) fn mark(&self, planner: Kind, belief: Mark) -> Mark {
-        let (patch_mm, likely) = self.quest.seeking().into();
-        mark(planner, (&self.dynamics, &self.area), belief).and([patch_mm, likely as u32])
+        let (patch_mm, likely, more) = self.quest.seeking().into();
+        let mark = mark(planner, (&self.dynamics, &self.area), belief);
+        mark.and([patch_mm, likely as u32, more.into()])
     }
 
     /// Aims anew for the part of its area that positions with such a tolerance leave.

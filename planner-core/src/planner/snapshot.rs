@@ -36,7 +36,7 @@ use crate::planner::Planner;
 /// | 9 | which mission they are of, and of look-ahead what speaks against the model |
 /// | 11 | of a planner that seeks a boundary, the labels of an area and the route through it |
 /// | 12 | of a front that is watched, where it was all along the stretch |
-pub const SNAPSHOT_VERSION: u16 = 12;
+pub const SNAPSHOT_VERSION: u16 = 13;
 
 /// What a planner has to remember over a sleep: the log of its belief (`T`), and what else it plans by (`M`).
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -148,7 +148,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     }
 
     /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been
-    /// followed to the border at both ends.
+    /// followed to the border at both ends. Of [several](Seeking::several) patches it seeks the next one first.
     #[must_use]
     pub fn until_closed(self) -> Self {
         Self { ends: true, ..self }
@@ -297,9 +297,22 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         self.hunt.scout.one_label()
     }
 
-    /// Whether the robot has gone along all of a closed front, and is back where it found it.
-    pub const fn is_closed(&self) -> bool {
-        self.lap.is_closed()
+    /// Whether the robot has gone along all of a closed front, and came back to where it found it.
+    pub fn is_closed(&self) -> bool {
+        self.lap.is_closed() || self.hunt.scout.quest.has_mapped()
+    }
+
+    /// Goes on where a patch is mapped and there may be others. Labels about it tell nothing of these.
+    fn seek_next(&mut self) {
+        let Self { lap, hunt, curve, .. } = self;
+        let about = (hunt.scout.width() / METRE) as i32;
+        if self.ends && lap.is_closed() {
+            let extent = lap.extent().grown(about);
+            if hunt.scout.quest.map(extent) {
+                lap.begin_again();
+                curve.leave();
+            }
+        }
     }
 
     /// Where the front crosses the line through a site that is square to a heading, on average, and how well that is known.
@@ -324,7 +337,8 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
     /// The curve has begun: the robot goes along it as it faced at the start.
     fn follow_from(&mut self, pose: Pose) {
         self.curve.face(self.lap.faced(pose));
-        self.hunt.scout.quest.phase = Phase::Follow;
+        let scout = &mut self.hunt.scout;
+        scout.quest.follow(pose.site, scout.near() / METRE);
     }
 
     /// Takes in the end of a motion where the front is sought.
@@ -472,6 +486,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Planner for Track<D, G, N> {
         if self.led.is_some() {
             return Plan::Stop(StopReason::Undecided);
         }
+        self.seek_next();
         if self.ends && self.lap.is_over() {
             return Plan::Stop(StopReason::Closed);
         }
@@ -492,7 +507,12 @@ impl<D: Dynamics, G: Workspace, const N: usize> Planner for Track<D, G, N> {
             }
             return Plan::Stop(StopReason::Cornered);
         }
-        if self.curve.is_begun() { self.follow(pose) } else { self.seek(pose) }
+        match if self.curve.is_begun() { self.follow(pose) } else { self.seek(pose) } {
+            Plan::Stop(StopReason::OneLabel) if self.hunt.scout.quest.has_mapped() => {
+                Plan::Stop(StopReason::Closed)
+            }
+            plan => plan,
+        }
     }
 
     fn observe_within(

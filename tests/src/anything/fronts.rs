@@ -64,7 +64,7 @@ pub fn draw_front(seed: u64, number: u64) -> Mission {
         given,
         front: told.moving(speed).expect("a speed"),
         watch,
-        seeking: Seeking::USUAL,
+        seeking: Seeking::USUAL.several(1 + (number % 3) as u8).expect("few"),
         until_closed: rng.random(),
         p_told,
         goal: None,

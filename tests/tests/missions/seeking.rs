@@ -17,8 +17,8 @@ use host_sim::mission::results::Ending;
 use host_sim::world::{World, reading};
 use nalgebra::{Point2, Vector2};
 use planner_core::{
-    AnyVehicle, Area, Far, Heading, Label, Line, Lines, Noise, OneLabel, Plan, Planner as _, Pose,
-    Reading, Sample, Seek, Site, StopReason, Unicycle,
+    AnyVehicle, Area, Far, Front, Heading, Label, Likely, Line, Lines, Noise, OneLabel, Plan,
+    Planner as _, Pose, Reading, Sample, Seek, Seeking, Site, StopReason, Track, Unicycle,
 };
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
@@ -278,5 +278,60 @@ fn what_is_lent_is_true() {
         });
         let wrong = is_false.iter().filter(|it| **it).count();
         assert!(wrong <= is_false.len().max(100) / 100, "p {p}, seed {SEED}: {wrong}");
+    }
+}
+
+/// Three spills in a lake: each is mapped, and the search for more comes to an end. That there is none at all takes some
+/// 1,140 and 1,240 steps.
+#[test]
+fn several_patches_are_mapped_one_after_the_other() {
+    const SPILLS: [([f64; 2], f64); 3] =
+        [([45.0, 45.0], 16.0), ([150.0, 40.0], 22.0), ([110.0, 115.0], 18.0)];
+    for (p, least) in [(1.0, 2.9), (0.9, 2.7)] {
+        let flown = ensemble::fly(cases(12, 100), |number| {
+            let mut rng = ensemble::rng(61, number);
+            let area = Area::metres([0.0, 0.0], [200.0, 150.0]).expect("an area");
+            let seeking = Seeking::patches(12.0).and_then(|it| it.likely(Likely::Spill).several(5));
+            let planner =
+                Track::new(area, unicycle(1, 2_000), Front::BENDING, Noise::new(p).expect("p"));
+            let planner = planner.and_then(|it| it.seeking(seeking.expect("few"))).expect("room");
+            let mut planner = planner.until_closed();
+            let start = [rng.random_range(2.0..198.0), rng.random_range(2.0..148.0)];
+            let heading = Heading::from_radians(rng.random_range(0.0..TAU)).expect("an angle");
+            let mut pose = Pose::at(start, heading).expect("a pose");
+            let mut mapped = [0; SPILLS.len()];
+            let off = |at: Point2<f64>, ([x, z], radius): ([f64; 2], f64)| {
+                (at - Point2::new(x, z)).norm() - radius
+            };
+            for step in 0..3_000 {
+                let motion = match planner.plan(pose) {
+                    Plan::Move(motion) => motion,
+                    Plan::Stop(reason) => return (mapped, Some(reason), step),
+                };
+                pose = motion.target;
+                let at = Point2::from(pose.site);
+                let is_in = SPILLS.iter().any(|it| off(at, *it) < 0.0) == rng.random_bool(p);
+                let label = if is_in { Label::Positive } else { Label::Negative };
+                planner.observe(pose, motion.wants_label.then_some(label.into())).expect("a label");
+                for place in planner.belief().mapped() {
+                    let at = Point2::from(place.waist.site);
+                    let on = SPILLS.iter().position(|it| off(at, *it).abs() < 5.0);
+                    if let Some(it) = on {
+                        mapped[it] += 1;
+                    }
+                }
+            }
+            (mapped, None, 3_000)
+        });
+        // Places are a metre apart.
+        let is_mapped = |count: i32, radius: f64| f64::from(count) > 0.8 * TAU * radius;
+        let found = flown.iter().map(|(mapped, ..)| {
+            let counts = mapped.iter().zip(SPILLS);
+            counts.filter(|(count, (_, radius))| is_mapped(**count, *radius)).count() as f64
+        });
+        expect(format!("p = {p}, patches mapped"), mean(found), least..);
+        let ends = percent(&flown, |it| it.1 == Some(StopReason::Closed));
+        expect(format!("p = {p}, ended as closed"), ends, 90.0..);
+        expect(format!("p = {p}, steps"), mean(flown.iter().map(|it| f64::from(it.2))), ..1_700.0);
     }
 }

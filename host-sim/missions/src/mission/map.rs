@@ -26,6 +26,9 @@ pub struct MapRecord {
     /// Metres between them that are not mapped, in straight lines.
     #[serde(default)]
     pub gaps: f64,
+    /// How many fronts the robot has gone all round, if several are sought.
+    #[serde(default, skip_serializing_if = "is_one")]
+    pub closed: usize,
     /// Metres driven since it was found.
     pub driven: f64,
     /// The half-widths (90 %), metres: their median and the largest. Null without vertices.
@@ -33,6 +36,11 @@ pub struct MapRecord {
     /// Beside the true front as it was then, if that is known.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub off: Option<OffRecord>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(closed: &usize) -> bool {
+    *closed < 2
 }
 
 /// How a front stands.
@@ -115,13 +123,25 @@ impl MapRecord {
     /// Of the steps of a mission or the rows of a track. `is_over` says whether the robot has gone along all of the front.
     pub fn after(steps: &[Mapped], is_over: bool) -> Self {
         let pieces = pieces(steps);
-        let is_closed = is_over && turns(&pieces) > ROUND;
+        let fronts = fronts(&pieces);
+        let (closed, is_closed) = match fronts.split_last() {
+            Some((last, before)) => {
+                let is_closed =
+                    is_over && turns(last) > ROUND || !before.is_empty() && is_round(last);
+                (before.len() + usize::from(is_closed), is_closed)
+            }
+            None => (0, false),
+        };
         let along = |pair: &[(usize, VertexRecord)]| match pair {
             [(_, from), (_, to)] => along(from, to),
             _ => 0.0,
         };
         let metres: f64 = pieces.iter().flat_map(|piece| piece.windows(2)).map(along).sum();
-        let gaps = gaps(&pieces, is_closed);
+        let gaps = fronts
+            .iter()
+            .enumerate()
+            .map(|(n, it)| gaps(it, n + 1 < fronts.len() || is_closed))
+            .sum();
         let (number, vertices) = (pieces.len(), pieces.concat());
         let found = steps.iter().find(|it| it.is_known);
         let known = steps.iter().rfind(|it| it.is_known);
@@ -144,6 +164,7 @@ impl MapRecord {
             metres: 0.0 + metres,
             pieces: number,
             gaps,
+            closed,
             driven: found.map_or(0.0, |it| whole - it.metres),
             half_width: median_and_most(vertices.iter().map(|(_, it)| it.half_width), 1.0),
             off: None,
@@ -155,8 +176,47 @@ impl MapRecord {
 /// ends turns less.
 const ROUND: f64 = 4.0;
 
+/// A place is near another within so many times the way between two places of the map.
+const NEAR: f64 = 4.0;
+
+/// The pieces by the fronts that they are of. Where the robot has gone all round one, what begins elsewhere is of another.
+fn fronts(pieces: &Places) -> Vec<&[Vec<(usize, VertexRecord)>]> {
+    let (mut fronts, mut begins) = (Vec::new(), 0);
+    for n in 1..pieces.len() {
+        let front = &pieces[begins..n];
+        let next = pieces[n].first().map(|it| it.1);
+        if next.is_some_and(|next| is_round(front) && !is_near(front, &next)) {
+            fronts.push(front);
+            begins = n;
+        }
+    }
+    if begins < pieces.len() {
+        fronts.push(&pieces[begins..]);
+    }
+    fronts
+}
+
+/// Whether the last place of a front is near another.
+fn is_near(pieces: &[Vec<(usize, VertexRecord)>], other: &VertexRecord) -> bool {
+    let count = pieces.iter().map(Vec::len).sum::<usize>();
+    let way: f64 = pieces
+        .iter()
+        .flat_map(|it| it.windows(2))
+        .map(|it| (it[1].1.at() - it[0].1.at()).norm())
+        .sum();
+    let last = pieces.iter().rev().find_map(|it| it.last()).map(|it| it.1);
+    let spacing = way / count as f64;
+    last.is_some_and(|last| (last.at() - other.at()).norm() <= NEAR * spacing + last.half_width)
+}
+
+/// Whether the robot has gone all round a front and come back to its first place.
+fn is_round(pieces: &[Vec<(usize, VertexRecord)>]) -> bool {
+    let first = pieces.iter().find_map(|it| it.first()).map(|it| it.1);
+    turns(pieces) > ROUND && first.is_some_and(|first| is_near(pieces, &first))
+}
+
 /// By how much the front turns along its pieces, radians.
-fn turns(pieces: &Places) -> f64 {
+fn turns(pieces: &[Vec<(usize, VertexRecord)>]) -> f64 {
     let turn = |pair: &[(usize, VertexRecord)]| {
         let by = pair[1].1.heading - pair[0].1.heading;
         libm::remainder(by, std::f64::consts::TAU)
@@ -166,7 +226,7 @@ fn turns(pieces: &Places) -> f64 {
 
 /// Metres between the pieces in straight lines, and of a closed front from the last place to the first. A piece begins
 /// near where the one before ended, or the robot has driven back to the first place.
-fn gaps(pieces: &Places, is_closed: bool) -> f64 {
+fn gaps(pieces: &[Vec<(usize, VertexRecord)>], is_closed: bool) -> f64 {
     let Some((_, first)) = pieces.first().and_then(|piece| piece.first()) else { return 0.0 };
     let mut ends = pieces.iter().filter_map(|piece| piece.last());
     let starts = pieces.iter().skip(1).filter_map(|piece| piece.first());

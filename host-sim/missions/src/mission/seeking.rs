@@ -9,7 +9,7 @@ use crate::mission::definition::Mission;
 use crate::mission::strict::{Table, wrong};
 
 /// What a boundary is like that is sought from nothing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeekTable {
     /// The radius of the smallest patch that is to be found, metres [default: a sixteenth of the mean of the area's sides].
@@ -18,12 +18,31 @@ pub struct SeekTable {
     /// What the boundary most likely is: `spill`, `coast`, or `either` [default: `either`].
     #[serde(default)]
     pub likely: Likely,
+    /// How many patches are mapped at most, one after the other, 1 to 8 [default: 1].
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub patches: u8,
+}
+
+const fn one() -> u8 {
+    1
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_one(number: &u8) -> bool {
+    *number == 1
+}
+
+impl Default for SeekTable {
+    fn default() -> Self {
+        Self { patch: None, likely: Likely::default(), patches: 1 }
+    }
 }
 
 impl SeekTable {
     /// What a planner is told, if it is not the usual.
     pub(crate) fn of(seeking: Seeking) -> Option<Self> {
-        let it = Self { patch: seeking.radius(), likely: seeking.most_likely() };
+        let (likely, patches) = (seeking.most_likely(), seeking.most_patches());
+        let it = Self { patch: seeking.radius(), likely, patches };
         (seeking != Seeking::USUAL).then_some(it)
     }
 
@@ -32,7 +51,8 @@ impl SeekTable {
     /// # Errors
     /// Says what is expected.
     pub fn told(self) -> Result<Seeking, ValueError> {
-        Ok(self.patch.map_or(Ok(Seeking::USUAL), Seeking::patches)?.likely(self.likely))
+        let seeking = self.patch.map_or(Ok(Seeking::USUAL), Seeking::patches)?;
+        seeking.likely(self.likely).several(self.patches)
     }
 }
 
@@ -43,6 +63,9 @@ impl SeekTable {
 pub(crate) fn seeking(table: Option<&Table<SeekTable>>) -> Result<Seeking> {
     let table = table.map(|table| table.0).unwrap_or_default();
     let radius = table.patch.unwrap_or_default();
+    if Seeking::USUAL.several(table.patches).is_err() {
+        return wrong("seek.patches", table.patches, "1 to 8");
+    }
     table.told().or_else(|why| wrong("seek.patch", radius, format!("metres ({why})")))
 }
 

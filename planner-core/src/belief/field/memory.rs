@@ -3,6 +3,7 @@
 use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS, Region, Shape};
 use crate::belief::field::recent::Recent;
 use crate::belief::sample::Label;
+use crate::geometry::hull::Extent;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 
@@ -85,7 +86,17 @@ impl FieldMemory {
         }
     }
 
-    /// Takes in a label that counts so many times.
+    /// Discs whose centres lie in an extent are not sought: what lies there is known.
+    pub(crate) fn leave_out(&mut self, layout: &Layout, extent: Extent) {
+        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+            let site = shape.centre().and_then(|at| layout.site(at));
+            if site.is_some_and(|it| extent.holds(it)) {
+                *sum = SHUT;
+            }
+        }
+    }
+
+    /// Takes in a label that counts so many times; -1 takes one back.
     pub(crate) fn take(&mut self, layout: &Layout, site: Site, label: Label, times: i8) {
         let by = if label == Label::Positive { times } else { times.saturating_neg() };
         let at = layout.seen(site);

@@ -32,4 +32,5 @@ pub use memory::FieldMemory;
 pub use odds::Left;
 pub(crate) use odds::{Field, Sought};
 pub(crate) use recent::REMEMBERED;
+pub(crate) use seeking::MOST_PATCHES;
 pub use seeking::{Likely, Seeking};

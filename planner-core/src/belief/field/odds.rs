@@ -5,6 +5,7 @@ use crate::belief::field::memory::{FieldMemory, SHUT};
 use crate::belief::field::recent::Recent;
 use crate::belief::field::seeking::Seeking;
 use crate::belief::sample::Label;
+use crate::geometry::hull::Extent;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 
@@ -127,10 +128,24 @@ impl Field {
         Ok(())
     }
 
-    /// Forgets all labels but the last ones.
-    pub(crate) fn forget<G: Workspace>(&mut self, area: &G) {
+    /// Forgets all labels but the last ones. What lies in these extents is not sought again.
+    pub(crate) fn forget<G: Workspace>(&mut self, area: &G, known: &[Extent]) {
         let kept = self.memory.recent;
         self.memory.begin(&self.layout, area, &kept);
+        for it in known {
+            self.memory.leave_out(&self.layout, *it);
+        }
+    }
+
+    /// A label counts no longer.
+    pub(crate) fn take_back(&mut self, site: Site, label: Label) {
+        self.memory.take(&self.layout, site, label, -1);
+    }
+
+    /// What lies in an extent is not sought, and the last labels were about it.
+    pub(crate) fn leave_out(&mut self, extent: Extent) {
+        self.memory.leave_out(&self.layout, extent);
+        self.memory.recent = Recent::NONE;
     }
 
     /// What was said of the boundary.
@@ -319,7 +334,7 @@ mod tests {
         };
         let mut field = field(0.9);
         assert!(shut(&field) < 1e-6);
-        field.forget(&area);
+        field.forget(&area, &[]);
         assert!((shut(&field) - 0.168).abs() < 0.02, "{}", shut(&field));
     }
 }

@@ -32,16 +32,18 @@ impl Likely {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "(u32, Likely)", into = "(u32, Likely)"))]
+#[cfg_attr(feature = "serde", serde(try_from = "(u32, Likely, u8)", into = "(u32, Likely, u8)"))]
 pub struct Seeking {
     /// 0 for the usual radius.
     patch_mm: u32,
     likely: Likely,
+    /// How many patches more than one.
+    more: u8,
 }
 
 impl Seeking {
     /// For patches that hold a disc of a sixteenth of the mean of the area's sides, and for coasts.
-    pub const USUAL: Self = Self { patch_mm: 0, likely: Likely::Either };
+    pub const USUAL: Self = Self { patch_mm: 0, likely: Likely::Either, more: 0 };
 
     /// For patches that hold a disc of this radius, metres, rounded to millimetres. A smaller patch may be missed. If in
     /// doubt, say less: half of the true radius costs little.
@@ -50,7 +52,7 @@ impl Seeking {
     /// [`ValueError`] unless the radius is from 0.01 to 5,000 m. A planner checks that it suits its area.
     pub fn patches(radius: f64) -> Result<Self, ValueError> {
         // A cast takes what is no number to 0, and what is too large to the largest number.
-        Self::try_from((libm::round(radius * 1e3) as u32, Likely::Either))
+        Self::try_from((libm::round(radius * 1e3) as u32, Likely::Either, 0))
             .ok()
             .filter(|it| it.patch_mm > 0)
             .ok_or(RANGE)
@@ -60,6 +62,23 @@ impl Seeking {
     #[must_use]
     pub const fn likely(self, likely: Likely) -> Self {
         Self { likely, ..self }
+    }
+
+    /// The same for so many patches: a follower that ends once it has [gone round](crate::Track::until_closed) seeks the
+    /// next one then, until so many are mapped or none is left.
+    ///
+    /// # Errors
+    /// [`ValueError`] unless there are 1 to 8.
+    pub const fn several(self, patches: u8) -> Result<Self, ValueError> {
+        match patches {
+            1..=MOST_PATCHES => Ok(Self { more: patches - 1, ..self }),
+            _ => Err(SEVERAL),
+        }
+    }
+
+    /// How many patches are mapped at most.
+    pub const fn most_patches(self) -> u8 {
+        self.more.saturating_add(1)
     }
 
     /// What the boundary most likely is.
@@ -78,22 +97,29 @@ impl Seeking {
     }
 }
 
+/// Patches at most.
+pub(crate) const MOST_PATCHES: u8 = 8;
+
+const SEVERAL: ValueError = ValueError("1 to 8 patches are mapped");
+
 const RANGE: ValueError = ValueError("the radius of a patch is from 0.01 to 5000 m");
 
-impl From<Seeking> for (u32, Likely) {
-    /// Millimetres, 0 for the usual radius.
-    fn from(Seeking { patch_mm, likely }: Seeking) -> Self {
-        (patch_mm, likely)
+impl From<Seeking> for (u32, Likely, u8) {
+    /// Millimetres, 0 for the usual radius; and how many patches more than one.
+    fn from(Seeking { patch_mm, likely, more }: Seeking) -> Self {
+        (patch_mm, likely, more)
     }
 }
 
-impl TryFrom<(u32, Likely)> for Seeking {
+impl TryFrom<(u32, Likely, u8)> for Seeking {
     type Error = ValueError;
 
     /// # Errors
     /// As [`patches`](Self::patches), but 0 stands for the usual radius.
-    fn try_from((patch_mm, likely): (u32, Likely)) -> Result<Self, ValueError> {
-        matches!(patch_mm, 0 | 10..=5_000_000).then_some(Self { patch_mm, likely }).ok_or(RANGE)
+    fn try_from((patch_mm, likely, more): (u32, Likely, u8)) -> Result<Self, ValueError> {
+        let is_radius = matches!(patch_mm, 0 | 10..=5_000_000);
+        let radius = is_radius.then_some(Self { patch_mm, likely, more: 0 }).ok_or(RANGE);
+        radius?.several(more.saturating_add(1))
     }
 }
 
@@ -108,6 +134,8 @@ mod tests {
         }
         let seeking = Seeking::patches(20.0).unwrap().likely(Likely::Spill);
         assert_eq!((seeking.radius(), seeking.most_likely()), (Some(20.0), Likely::Spill));
-        assert_eq!(Seeking::USUAL.radius(), None);
+        assert_eq!((Seeking::USUAL.radius(), Seeking::USUAL.most_patches()), (None, 1));
+        assert_eq!(seeking.several(3).map(Seeking::most_patches), Ok(3));
+        assert!(seeking.several(0).is_err() && seeking.several(9).is_err());
     }
 }
