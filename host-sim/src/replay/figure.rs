@@ -5,8 +5,10 @@ use planner_core::Sample;
 
 use crate::replay::answer::Answer;
 use crate::replay::record::Replay;
-use crate::report::picture::{Dot, Ground, Kind, Named, Picture, Ring, area_around};
-use crate::report::ribbon::Ribbon;
+use crate::report::ground::{AGREED, CERTAIN, Ground};
+use crate::report::look::{self, DISAGREES};
+use crate::report::picture::{Dot, Drawn, Picture, area_around};
+use crate::report::style::ESTIMATE;
 
 /// Samples that a figure shows beside those that bound the line.
 const MOST_OTHERS: usize = 2_000;
@@ -21,18 +23,16 @@ impl Replay {
         let samples = &self.file.samples;
         let area = area_around(samples).context("no area around the samples")?;
         let Answer { bounding, doubt, .. } = &self.answer;
-        let mut rings = vec![None; samples.len()];
+        let read = |s: &Sample| Dot::new(s.site, look::read(s.label));
+        let mut dots: Vec<_> = samples.iter().map(read).collect();
         for &index in doubt.iter().flat_map(|doubt| &doubt.disagreeing) {
-            rings[index] = Some(Ring::Disagrees);
+            dots[index].ring = Some(DISAGREES);
         }
         let count = samples.len();
         let every =
             if count - bounding.len() > MOST_OTHERS { count.div_ceil(MOST_OTHERS) } else { 1 };
-        let dot = |s: &Sample, ring| Dot { at: s.site.into(), label: s.label, ring, sought: false };
-        let mut dots: Vec<_> =
-            samples.iter().zip(rings).step_by(every).map(|(s, ring)| dot(s, ring)).collect();
         if every > 1 {
-            dots.extend(bounding.iter().map(|s| dot(s, None)));
+            dots = dots.into_iter().step_by(every).chain(bounding.iter().map(read)).collect();
         }
         let sparse = (every > 1).then(|| {
             let bounding = bounding.len();
@@ -52,30 +52,15 @@ impl Replay {
             note
         };
         let (name, line) = self.named()[0];
-        let centre = line.map(|line| Named {
-            name: format!("estimate: {name}"),
-            line,
-            kind: Kind::Estimate,
-            beside: None,
-        });
-        let svg = Picture {
-            title: self.file.name.clone(),
-            note,
-            area: area.into(),
-            ground: match doubt {
-                None => Ground::Certain(self.answer.ground(area)),
-                Some(_) => Ground::Agreed(self.answer.ground(area)),
-            },
-            is_refuted: false,
+        let estimate =
+            |line| Drawn::across(area.into(), line, ESTIMATE, format!("estimate: {name}"));
+        let picture = Picture {
+            ground: Ground::Labelled(self.answer.ground(area)),
+            says: if doubt.is_some() { AGREED } else { CERTAIN },
             samples: dots,
-            given: 0,
-            path: None,
-            truth: None,
-            lines: centre.into_iter().collect(),
-            follows: false,
-            front: Ribbon::default(),
-        }
-        .svg();
-        Ok(svg)
+            lines: line.map(estimate).into_iter().collect(),
+            ..Picture::bare(&self.file.name, note.unwrap_or_default(), area)
+        };
+        Ok(picture.svg())
     }
 }

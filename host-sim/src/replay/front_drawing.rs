@@ -5,22 +5,19 @@ use geojson::{Feature, GeometryValue};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::float::simplify::SimplifyShape as _;
 use nalgebra::Point2;
-use planner_core::Sample;
 use serde_json::{Value, json};
 
+use crate::mission::front::VertexRecord;
 use crate::mission::map::State;
 use crate::replay::frame::Frame;
 use crate::replay::front_map::FrontMap;
 use crate::replay::geojson::{collection, feature};
-use crate::report::picture::{Dot, Ground, Picture, area_of};
-use crate::report::pieces::Pieces;
-use crate::report::ribbon::{Ribbon, Rung};
+use crate::report::look;
+use crate::report::picture::{Dot, Picture};
+use crate::report::pieces::{Pieces, ends};
 
 /// Samples that a figure shows at most, so that they do not hide the front.
 const MOST: usize = 150;
-
-/// Vertices that a figure shows at most, and the last of each piece.
-const MOST_VERTICES: usize = 5_000;
 
 impl FrontMap {
     /// The samples and the front that they map, as an SVG document. Of very many samples and vertices it shows some.
@@ -29,12 +26,8 @@ impl FrontMap {
     /// When it could not be drawn.
     pub fn figure(&self) -> Result<String> {
         let samples = &self.file.samples;
-        let front = some(Ribbon::from(&self.pieces));
-        let places = samples.iter().map(|it| it.site.into()).chain(front.ways().flatten());
-        let area = area_of(places).context("no area around the samples")?;
         let count = samples.len();
         let every = count.div_ceil(MOST).max(1);
-        let dot = |s: &Sample| Dot { at: s.site.into(), label: s.label, ring: None, sought: false };
         let sparse =
             if every > 1 { format!("; one label in {every} shown") } else { String::new() };
         let metres = self.map.metres;
@@ -45,21 +38,12 @@ impl FrontMap {
             State::Closed => format!("A closed front: {metres:.0} m mapped"),
             State::Followed => format!("A front: {metres:.0} m mapped"),
         };
-        let svg = Picture {
-            title: self.file.name.clone(),
-            note: Some(format!("{what} along a track of {count} labels{sparse}")),
-            area: area.into(),
-            ground: Ground::Plain,
-            is_refuted: false,
-            samples: samples.iter().step_by(every).map(dot).collect(),
-            given: 0,
-            path: None,
-            truth: None,
-            lines: Vec::new(),
-            follows: true,
-            front,
-        };
-        Ok(svg.svg())
+        let note = format!("{what} along a track of {count} labels{sparse}");
+        let dots = samples.iter().map(|s| Dot::new(s.site, look::small(s.label))).collect();
+        let picture = Picture::of_front(&self.file.name, note, dots, self.pieces.clone());
+        let mut picture = picture.context("no area around the samples")?;
+        picture.samples = picture.samples.into_iter().step_by(every).collect();
+        Ok(picture.svg())
     }
 
     /// The front by its pieces: the ground where it lies with a probability of 0.9, the mean front, and each vertex.
@@ -77,23 +61,12 @@ impl FrontMap {
                 told["time"] = time;
             }
         };
-        let mut features =
-            features(&self.pieces, &Ribbon::from(&self.pieces), &file.frame, &number)?;
+        let mut features = features(&self.pieces, &self.pieces, &file.frame, &number)?;
         for (index, sample) in file.samples.iter().enumerate() {
             features.push(file.point(index, sample, None)?);
         }
         Ok(collection(features))
     }
-}
-
-/// Of very many vertices some, and the last of each piece.
-pub(crate) fn some(mut front: Ribbon) -> Ribbon {
-    let each = front.0.iter().map(Vec::len).sum::<usize>().div_ceil(MOST_VERTICES).max(1);
-    for rungs in &mut front.0 {
-        let last = rungs.last().copied();
-        *rungs = rungs.iter().step_by(each).copied().chain(last.filter(|_| each > 1)).collect();
-    }
-    front
 }
 
 /// Longitude and latitude.
@@ -105,23 +78,23 @@ pub(crate) fn degrees(frame: &Frame, at: Point2<f64>) -> Result<[f64; 2]> {
     Ok([lon, lat])
 }
 
-/// A front by its pieces: bands, lines and vertices. `number` adds what numbers a vertex, by its index and its number.
+/// A front by its pieces: bands and lines as they are drawn, and vertices. `number` adds what numbers a vertex, by its index and its number.
 ///
 /// # Errors
 /// Metres have no place on a map by themselves.
 pub(crate) fn features(
     pieces: &Pieces,
-    ribbon: &Ribbon,
+    drawn: &Pieces,
     frame: &Frame,
     number: &dyn Fn(usize, usize, &mut Value),
 ) -> Result<Vec<Feature>> {
     let mut features = Vec::new();
-    for (piece, rungs) in (1..).zip(&ribbon.0) {
+    for (piece, vertices) in (1..).zip(&drawn.0) {
         let on_globe = |ring: &Vec<[f64; 2]>| {
             let closed = ring.iter().chain(ring.first());
             closed.map(|at| degrees(frame, (*at).into())).collect::<Result<Vec<_>>>()
         };
-        let band = band(rungs).into_iter();
+        let band = band(vertices).into_iter();
         let band = band.map(|polygon| polygon.iter().map(on_globe).collect::<Result<Vec<_>>>());
         let band = band.collect::<Result<Vec<_>>>()?;
         if !band.is_empty() {
@@ -131,8 +104,8 @@ pub(crate) fn features(
             ));
         }
     }
-    for (piece, rungs) in (1..).zip(&ribbon.0) {
-        let way = rungs.iter().map(|it| degrees(frame, it.at)).collect::<Result<Vec<_>>>()?;
+    for (piece, way) in (1..).zip(drawn.ways()) {
+        let way = way.into_iter().map(|at| degrees(frame, at)).collect::<Result<Vec<_>>>()?;
         if way.len() > 1 {
             features.push(feature(
                 GeometryValue::new_line_string(way),
@@ -157,8 +130,8 @@ pub(crate) fn features(
 
 /// The ground within the intervals of a piece: polygons that do not overlap, each by its rings, the outer one first and
 /// counter-clockwise.
-fn band(rungs: &[Rung]) -> Vec<Vec<Vec<[f64; 2]>>> {
-    let quads = rungs.windows(2).map(|pair| ring([pair[0].ends, pair[1].ends]));
+fn band(piece: &[(usize, VertexRecord)]) -> Vec<Vec<Vec<[f64; 2]>>> {
+    let quads = piece.windows(2).map(|pair| ring([ends(&pair[0].1), ends(&pair[1].1)]));
     let quads: Vec<Vec<[f64; 2]>> = quads.map(|it| it.map(Into::into).to_vec()).collect();
     quads.simplify_shape(FillRule::NonZero)
 }

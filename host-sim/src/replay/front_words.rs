@@ -27,14 +27,14 @@ impl FrontMap {
             text += &front::map(&self.map, unit);
             text += &self.end_in_words();
         }
-        let pieces: Vec<_> = self.pieces.iter().collect();
+        let pieces = &self.pieces.0;
         if pieces.len() > 1 {
             let count = pieces.len();
             let more = if count > MOST_NAMED { ", the first of which are" } else { "" };
             let _ = writeln!(text, "It has {count} pieces{more}:");
         }
         for piece in pieces.iter().take(MOST_NAMED).filter(|_| pieces.len() > 1) {
-            if let ([(first, from), ..], [.., (last, to)]) = (piece, piece) {
+            if let ([(first, from), ..], [.., (last, to)]) = (&piece[..], &piece[..]) {
                 let ends = [from, to].map(|it| format!("({:.2}, {:.2})", it.x, it.z));
                 let [from, to] = ends;
                 let _ = writeln!(text, "  {unit}s {first} to {last}: from {from} to {to}");

@@ -3,20 +3,17 @@
 use anyhow::{Context as _, Result, bail};
 use serde_json::Value;
 
-use crate::replay::front_drawing::{degrees, features, some};
+use crate::replay::front_drawing::{degrees, features};
 use crate::replay::geojson::collection;
 use crate::replay::joined_map::JoinedMap;
-use crate::report::picture::{Ground, Picture, area_of};
-use crate::report::ribbon::Ribbon;
+use crate::report::picture::Picture;
+use crate::report::pieces::Pieces;
 
 impl JoinedMap {
     /// The joined map by its pieces. One that is closed ends where it begins.
-    fn ribbon(&self) -> Ribbon {
-        let mut ribbon = Ribbon::from(&self.pieces);
-        if let (true, Some(rungs)) = (self.joined.is_closed, ribbon.0.first_mut()) {
-            rungs.extend(rungs.first().copied());
-        }
-        ribbon
+    fn drawn(&self) -> Pieces {
+        let pieces = self.pieces.clone();
+        if self.joined.is_closed { pieces.closed() } else { pieces }
     }
 
     /// The joined map as an SVG document. Of very many vertices it shows some.
@@ -24,26 +21,12 @@ impl JoinedMap {
     /// # Errors
     /// When it could not be drawn.
     pub fn figure(&self) -> Result<String> {
-        let front = some(self.ribbon());
-        let area = area_of(front.ways().flatten()).context("no area around the map")?;
         let (metres, count) = (self.joined.metres(), self.files.len());
         let what = if self.joined.is_closed { "A closed front" } else { "A front" };
         let names: Vec<_> = self.files.iter().map(|it| it.name.clone()).collect();
-        let svg = Picture {
-            title: names.join(", "),
-            note: Some(format!("{what}: {metres:.0} m mapped by {count} robots")),
-            area: area.into(),
-            ground: Ground::Plain,
-            is_refuted: false,
-            samples: Vec::new(),
-            given: 0,
-            path: None,
-            truth: None,
-            lines: Vec::new(),
-            follows: true,
-            front,
-        };
-        Ok(svg.svg())
+        let note = format!("{what}: {metres:.0} m mapped by {count} robots");
+        let picture = Picture::of_front(&names.join(", "), note, Vec::new(), self.drawn());
+        Ok(picture.context("no area around the map")?.svg())
     }
 
     /// The joined map by its pieces, as `replay --front` writes one. A vertex also has its `robot`.
@@ -70,6 +53,6 @@ impl JoinedMap {
             told[self.numbers()] = number.into();
             told["robot"] = robots[index].into();
         };
-        Ok(collection(features(&self.pieces, &self.ribbon(), &self.frame, &number)?))
+        Ok(collection(features(&self.pieces, &self.drawn(), &self.frame, &number)?))
     }
 }

@@ -11,11 +11,13 @@ use planner_core::PosteriorView;
 use planner_core::geometry::lattice::Vector;
 use planner_core::geometry::line::Bound;
 use planner_core::link::message::MissionArea;
+use serde::Serialize;
 
 use crate::mission::definition::Table;
 use crate::mission::read_out::LEVEL;
 use crate::world::extent::span;
 use crate::world::polygon::Polygon;
+use crate::world::way::Way;
 
 /// The thresholds of the bands: the least probability that lines pass a place of each. Ground below the first is blank.
 pub const LEAST: [f64; 5] = [0.01, 0.2, 0.4, 0.6, 0.8];
@@ -27,12 +29,12 @@ const LEAST_SEEN: f64 = 1e-4;
 const COLUMNS: u32 = 240;
 
 /// Ground where the line passes with at least some probability.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Band {
     /// The least probability of the hypotheses of the credible set that have lines through a place of it.
     pub from: f64,
     /// Polygons that touch at most, each as its corners in metres. A hole is between two of them.
-    pub rings: Vec<Vec<Point2<f64>>>,
+    pub rings: Vec<Way>,
 }
 
 /// Coordinates along the middle direction of the set's lines and across it, metres.

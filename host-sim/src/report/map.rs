@@ -1,35 +1,36 @@
-//! A map of an area: ground, lines, paths and samples on it, each named in the legend as it is drawn.
+//! A picture as SVG, in the manner of the paper's Figure 7. Ground, lines, paths and samples are named in the legend as
+//! they are drawn.
 
 use std::collections::HashSet;
+use std::iter;
 
 use nalgebra::{Point2, Vector2};
 use planner_core::link::message::MissionArea;
-use planner_core::{Label, Line, Workspace as _};
+use planner_core::{Label, Workspace as _};
 
 use crate::report::axes::{Axes, Axis, Scale};
 use crate::report::bands::Band;
 use crate::report::ground::Ground;
-use crate::report::look::Look;
+use crate::report::look::{END, Look, MISSING, Mark, START, TRULY, UNREAD};
 use crate::report::numbers;
-use crate::report::picture::{Dot, Ring, Stop};
+use crate::report::picture::{Drawn, Picture};
 use crate::report::placing::{Frame, Placing, foot};
-use crate::report::ribbon::Ribbon;
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
-use crate::report::style::{BORDER, FRONT, Fill, HEADING, INK, INSET, PATH, Stroke};
+use crate::report::style::{BORDER, FRONT, Fill, HEADING, INK, INSET, PATH, dashed};
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 
 /// Metres and pixels of a map, and what is on it so far.
-pub(crate) struct Map {
-    area: MissionArea,
+struct Map<'a> {
+    picture: &'a Picture,
+    /// The border of the area, the first corner once more at the end.
+    border: Vec<Spot>,
     axes: Axes,
     sheet: Sheet,
     placing: Placing,
-    /// Words that are placed after all marks: the text, its spot and its size.
-    words: Vec<(String, Spot, f64)>,
-    /// Whether it is of a front: marks are small and thinned, as there are many.
-    follows: bool,
+    /// Words that are placed after all marks: the text and its spot.
+    words: Vec<(String, Spot)>,
     /// Where a thinned map has marks already: what mark, in which cell.
     marked: HashSet<(&'static str, [i64; 2])>,
     /// Whether it shows a part of the area.
@@ -42,56 +43,50 @@ const SMALL: f64 = 0.5;
 /// The sides of a part of an area differ by this factor at most.
 const SLIM: f64 = 0.4;
 
-/// The greatest distance of a name from its spot, pixels.
-const REACH: f64 = 90.0;
-
-impl Map {
-    /// The bare area, large enough for some more places.
-    pub(crate) fn new(
-        title: &str,
-        note: Option<&str>,
-        area: &MissionArea,
-        more: &[Point2<f64>],
-    ) -> Self {
-        let ends = ends(area);
-        let ends = around(ends.into_iter().chain(more.iter().copied())).unwrap_or(ends);
-        Self::between([title, note.unwrap_or_default()], area, more, (ends, false))
+impl Picture {
+    /// The picture as an SVG document. Of a front marks are below the path and its map, as there are many.
+    pub fn svg(&self) -> String {
+        let mut map = Map::of(self);
+        map.ground();
+        if self.follows {
+            map.samples();
+            map.path();
+            map.draw(&self.mapped());
+        }
+        self.truth.iter().chain(&self.lines).for_each(|it| map.draw(it));
+        if self.follows {
+            map.inset();
+        } else {
+            map.path();
+            map.samples();
+        }
+        map.finish()
     }
 
-    /// The same for the map of a front. If the track covers a small part of the area, it shows that part.
-    pub(crate) fn following(
-        title: &str,
-        note: Option<&str>,
-        area: &MissionArea,
-        track: &[Point2<f64>],
-    ) -> Self {
-        let [low, high] = ends(area);
-        let part = around(track.iter().copied()).map(|[min, max]| {
-            let size = max - min;
-            let margin = 0.1 * size.amax();
-            let half = size.map(|it| it.max(SLIM * size.amax()) / 2.0 + margin);
-            let middle = nalgebra::center(&min, &max);
-            [middle - half, middle + half]
-        });
-        let part = part.filter(|[min, max]| (max - min).amax() < SMALL * (high - low).amax());
-        let titles = [title, note.unwrap_or_default()];
-        let mut map = match part.filter(|[min, max]| min != max) {
-            Some(part) => Self::between(titles, area, track, (part, true)),
-            None => Self::new(title, note, area, track),
-        };
-        map.follows = true;
-        map
+    /// The part of the area that a map of a front shows: the track alone if that is small.
+    fn part(&self, places: &[Point2<f64>]) -> Option<[Point2<f64>; 2]> {
+        let [low, high] = ends(&self.area);
+        let [min, max] = around(places.iter().copied()).filter(|_| self.follows)?;
+        let size = max - min;
+        let margin = 0.1 * size.amax();
+        let half = size.map(|it| it.max(SLIM * size.amax()) / 2.0 + margin);
+        let middle = nalgebra::center(&min, &max);
+        let is_small = size.amax() > 0.0 && 2.0 * half.amax() < SMALL * (high - low).amax();
+        is_small.then_some([middle - half, middle + half])
     }
+}
 
-    fn between(
-        [title, note]: [&str; 2],
-        area: &MissionArea,
-        more: &[Point2<f64>],
-        ([min, max], is_part): ([Point2<f64>; 2], bool),
-    ) -> Self {
+impl<'a> Map<'a> {
+    /// The bare area, large enough for all places of the picture.
+    fn of(picture: &'a Picture) -> Self {
         const SIZE: f64 = 620.0;
         const LEAST: f64 = 220.0;
         const TOP: f64 = 70.0;
+        let Picture { title, note, area, .. } = picture;
+        let places = picture.places();
+        let part = picture.part(&places);
+        let all = || around(ends(area).into_iter().chain(places.iter().copied()));
+        let [min, max] = part.or_else(all).unwrap_or(ends(area));
         let scale = SIZE / (max - min).amax();
         let size = (max - min).map(|metres| (metres * scale).max(LEAST));
         let axis = |figures, pixels| Axis { scale: Scale::Linear, figures, pixels };
@@ -109,30 +104,28 @@ impl Map {
         if !note.is_empty() {
             sheet.words(note, Spot::new(16.0, 48.0), 13.0, Anchor::Start);
         }
-        if is_part {
+        if part.is_some() {
             sheet.open();
         }
-        let placing = Placing::new(axes.frame());
+        let border = Polygon::from(*area);
+        let corners = border.0.iter().chain(border.0.first());
         let mut map = Self {
-            area: *area,
+            picture,
+            border: corners.map(|at| axes.at(*at)).collect(),
+            placing: Placing::new(axes.frame()),
             axes,
             sheet,
-            placing,
             words: Vec::new(),
-            follows: false,
             marked: HashSet::new(),
-            is_part,
+            is_part: part.is_some(),
         };
-        let mut border = map.spots(&Polygon::from(*area).0);
-        border.extend(border.first().copied());
-        map.placing.way(&border);
-        let is_all =
-            area.sides().next().is_none() && more.iter().all(|at| Polygon::from(*area).holds(*at));
+        map.placing.way(&map.border);
+        let is_all = area.sides().next().is_none() && places.iter().all(|at| border.holds(*at));
         if !is_all {
             let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
             let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
             let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
-            map.sheet.ground(Fill::Outside, &[all, map.spots(&Polygon::from(*area).0)]);
+            map.sheet.ground(Fill::Outside, &[all, map.spots(&border.0)]);
             map.sheet.name(Look::Ground(Fill::Outside), "outside the area");
         }
         map
@@ -142,30 +135,32 @@ impl Map {
         places.iter().map(|at| self.axes.at(*at)).collect()
     }
 
-    /// What is known of the ground.
-    ///
-    /// `is_refuted`: a label contradicts it.
-    pub(crate) fn ground(&mut self, ground: &Ground, is_refuted: bool) {
-        match ground {
-            Ground::Certain(regions) => {
-                let certain = if is_refuted { "taken to be certain of" } else { "certain to have" };
-                self.regions(regions, &format!("ground {certain} label"));
-                self.sheet.name(Look::Ground(Fill::Blank), "white: still uncertain");
-            }
-            Ground::Agreed(regions) => {
-                self.regions(regions, "all lines of the set have label");
-                self.sheet.name(Look::Ground(Fill::Blank), "white: lines of the set differ");
+    /// What is known of the ground, and what is kept out of.
+    fn ground(&mut self) {
+        match &self.picture.ground {
+            Ground::Labelled(regions) => {
+                let [labelled, white] = self.picture.says;
+                for (label, region) in [Label::Positive, Label::Negative].into_iter().zip(regions) {
+                    let meaning = format!("{labelled} {:+}", label.sign());
+                    self.fill(Fill::Of(label), &region.0, &meaning);
+                }
+                if !white.is_empty() {
+                    self.sheet.name(Look::Ground(Fill::Blank), white);
+                }
             }
             Ground::Credible(bands) => self.shade(bands),
             Ground::Plain => {}
         }
-    }
-
-    /// Ground of either label.
-    fn regions(&mut self, [positive, negative]: &[Polygon; 2], meaning: &str) {
-        for (label, region) in [(Label::Positive, positive), (Label::Negative, negative)] {
-            let meaning = format!("{meaning} {:+}", label.sign());
-            self.fill(Fill::Of(label), &[&region.0[..]], &meaning);
+        self.fill(Fill::Doubtful, &self.picture.doubtful.0, "labels may be wrong here");
+        self.front_ground();
+        for hull in self.picture.area.hulls() {
+            let Polygon(outline) = Polygon::from(hull);
+            if outline.len() == 2 {
+                let way = self.spots(&outline);
+                self.sheet.ways(dashed("keep-out", "#6e6e6e", 4.0, ""), [&way[..]]);
+                self.sheet.name(Look::Ground(Fill::KeepOut), "kept out of");
+            }
+            self.fill(Fill::KeepOut, &outline, "kept out of");
         }
     }
 
@@ -177,11 +172,8 @@ impl Map {
         let least = bands.iter().map(|band| format!("{:.0}", 100.0 * band.from));
         let least: Vec<_> = least.collect();
         if let Some((last, before)) = least.split_last() {
-            let list = if before.is_empty() {
-                last.clone()
-            } else {
-                format!("{} and {last}", before.join(", "))
-            };
+            let before = before.join(", ");
+            let list = if before.is_empty() { last } else { &format!("{before} and {last}") };
             let meaning = format!(
                 "the line passes here with a probability of at least {list} % (white: less)"
             );
@@ -190,142 +182,97 @@ impl Map {
     }
 
     /// Ground of one kind.
-    pub(crate) fn fill(&mut self, fill: Fill, polygons: &[&[Point2<f64>]], meaning: &str) {
-        let rings: Vec<_> =
-            polygons.iter().map(|ring| self.spots(ring)).filter(|ring| ring.len() > 2).collect();
-        if !rings.is_empty() {
-            self.sheet.ground(fill, &rings);
+    fn fill(&mut self, fill: Fill, ring: &[Point2<f64>], meaning: &str) {
+        if ring.len() > 2 {
+            self.sheet.ground(fill, &[self.spots(ring)]);
             self.sheet.name(Look::Ground(fill), meaning);
         }
     }
 
     /// The ground where a mapped front lies with a probability of 0.9. The legend begins with it and its front.
-    pub(crate) fn front_ground(&mut self, front: &Ribbon, mapped: &str) {
+    fn front_ground(&mut self) {
+        let mut rings = self.picture.front.ground().flatten().peekable();
+        if rings.peek().is_none() {
+            return;
+        }
         let mut is_narrow = true;
-        for quad in front.ground() {
+        for quad in rings {
             let ring = self.spots(&quad);
             is_narrow &= (ring[0] - ring[3]).norm() < FRONT.width;
             self.sheet.ground(Fill::Front, &[ring]);
         }
-        if !front.is_empty() {
-            let seen = if is_narrow { "; here it is narrower than the line" } else { "" };
-            let meaning = format!("the front lies here with a probability of 90 %{seen}");
-            self.sheet.name(Look::Ground(Fill::Front), meaning);
-            self.sheet.name(Look::Line(FRONT), mapped);
-        }
+        let seen = if is_narrow { "; here it is narrower than the line" } else { "" };
+        let meaning = format!("the front lies here with a probability of 90 %{seen}");
+        self.sheet.name(Look::Ground(Fill::Front), meaning);
+        self.sheet.name(Look::Line(FRONT), self.picture.mapped().name);
     }
 
-    /// Whether there is space for a mark: a map of a front has one of a look in each cell of so many pixels.
-    fn has_space(&mut self, look: Look, at: Spot, cell: f64) -> bool {
-        let of = |it: f64| (it / cell).floor() as i64;
-        !self.follows || self.marked.insert((look.class(), [of(at.x), of(at.y)]))
-    }
-
-    /// Draws the keep-outs.
-    pub(crate) fn limits(&mut self) {
-        let outlines: Vec<Polygon> = self.area.hulls().map(Polygon::from).collect();
-        for Polygon(outline) in &outlines {
-            let ring = self.spots(outline);
-            if let [from, to] = ring[..] {
-                self.sheet.ways(
-                    Stroke { class: "keep-out", width: 4.0, colour: "#6e6e6e", dashes: "" },
-                    [&[from, to][..]],
-                );
+    /// A line or a boundary, with its short word beside its right end.
+    fn draw(&mut self, Drawn { name, stroke, ways, beside }: &Drawn) {
+        for way in ways {
+            let mut spots = self.spots(way);
+            self.placing.way(&spots);
+            self.sheet.ways(*stroke, [&spots[..]]);
+            self.sheet.name(Look::Line(*stroke), name);
+            if let Some(word) = beside {
+                spots.sort_by(|p, q| p.x.total_cmp(&q.x));
+                let inward = (spots[0] - spots[1]).normalize() * 16.0;
+                self.words.push((word.clone(), spots[1] + inward));
             }
-            self.sheet.ground(Fill::KeepOut, &[ring]);
-            self.sheet.name(Look::Ground(Fill::KeepOut), "kept out of");
         }
     }
 
-    /// A line across the area, with a short name beside it if it has one.
-    pub(crate) fn line(
-        &mut self,
-        line: &Line,
-        stroke: Stroke,
-        meaning: &str,
-        beside: Option<&str>,
-    ) {
-        let Some(chord) = Polygon::from(self.area).chord(line) else { return };
-        self.stretch(&chord, stroke, meaning);
-        if let Some(name) = beside {
-            let mut ends = self.spots(&chord);
-            ends.sort_by(|p, q| p.x.total_cmp(&q.x));
-            let inward = (ends[0] - ends[1]).normalize() * 16.0;
-            self.beside(name, ends[1] + inward, 14.0);
+    /// A mark, if there is space for it: a map of a front has one of a look in each cell.
+    fn mark(&mut self, mark: Mark, at: Spot) {
+        let cell = [at.x, at.y].map(|it| (it / mark.cell).floor() as i64);
+        let is_thinned = self.picture.follows && mark.cell > 0.0;
+        if !is_thinned || self.marked.insert((mark.class, cell)) {
+            self.sheet.mark(Look::Mark(mark), at);
         }
-    }
-
-    /// A way through some places.
-    pub(crate) fn stretch(&mut self, places: &[Point2<f64>], stroke: Stroke, meaning: &str) {
-        let spots = self.spots(places);
-        self.placing.way(&spots);
-        self.sheet.ways(stroke, [&spots[..]]);
-        self.sheet.name(Look::Line(stroke), meaning);
-    }
-
-    /// Gives a look another meaning than it has on other maps.
-    pub(crate) fn mean(&mut self, look: Look, meaning: String) {
-        self.sheet.name(look, meaning);
-    }
-
-    /// A short name beside a place.
-    pub(crate) fn name(&mut self, name: &str, at: Point2<f64>) {
-        let at = self.axes.at(at);
-        self.beside(name, at, 14.0);
-    }
-
-    fn beside(&mut self, name: &str, at: Spot, size: f64) {
-        self.words.push((name.to_owned(), at, size));
+        self.sheet.name(Look::Mark(mark), mark.meaning);
+        self.placing.mark(at, mark.radius);
     }
 
     /// The path with the heading after each step, and where the robot truly was. Numbers of steps come last.
-    pub(crate) fn path(&mut self, start: Point2<f64>, stops: &[Stop]) {
+    fn path(&mut self) {
+        let Picture { start, stops, follows, .. } = self.picture;
+        let Some(start) = start else { return };
         let places = stops.iter().flat_map(|stop| &stop.way);
-        let way: Vec<_> =
-            std::iter::once(&start).chain(places).map(|at| self.axes.at(*at)).collect();
+        let way: Vec<_> = iter::once(start).chain(places).map(|at| self.axes.at(*at)).collect();
         self.placing.way(&way);
-        self.sheet.mark(Look::Start, way[0]);
-        self.sheet.name(Look::Start, "start");
-        self.placing.mark(way[0], 13.5);
+        self.mark(START, way[0]);
+        let [.., end] = way[..] else { return };
         if stops.is_empty() {
             return;
         }
         self.sheet.ways(PATH, [&way[..]]);
         self.sheet.name(Look::Line(PATH), "path of the robot");
-        if !self.follows {
-            self.headings(stops);
+        if !follows {
+            self.headings();
         }
         for stop in stops {
             let at = self.axes.at(stop.at);
             if let Some(truly) = stop.truly.map(|truly| self.axes.at(truly)) {
-                let thin = Stroke { class: "truly", colour: INK, width: 0.8, dashes: "" };
-                self.sheet.ways(thin, [&[at, truly][..]]);
-                self.sheet.mark(Look::Truly, truly);
-                self.sheet.name(Look::Truly, "where the robot truly was");
+                self.sheet.ways(dashed("truly", INK, 0.8, ""), [&[at, truly][..]]);
                 self.placing.way(&[at, truly]);
-                self.placing.mark(truly, 4.0);
+                self.mark(TRULY, truly);
             }
             if stop.lacks_reading {
-                if self.has_space(Look::Missing, at, 12.0) {
-                    self.sheet.mark(Look::Missing, at);
-                }
-                self.sheet.name(Look::Missing, "a label was asked for, and none came");
-            } else if !stop.sensed && !self.follows {
-                self.sheet.mark(Look::Unread, at);
-                self.sheet.name(Look::Unread, "a stop where no label was read");
+                self.mark(MISSING, at);
+            } else if !stop.sensed && !follows {
+                self.mark(UNREAD, at);
             }
             self.placing.mark(at, 4.5);
         }
-        if let (true, Some(end)) = (self.follows, way.last()) {
-            self.sheet.mark(Look::End, *end);
-            self.sheet.name(Look::End, "end");
+        if *follows {
+            self.mark(END, end);
         }
     }
 
     /// The heading after each step.
-    fn headings(&mut self, stops: &[Stop]) {
+    fn headings(&mut self) {
         const TICK: f64 = 13.0;
-        let ticks = stops.iter().map(|stop| {
+        let ticks = self.picture.stops.iter().map(|stop| {
             let (sin, cos) = libm::sincos(stop.heading);
             let at = self.axes.at(stop.at);
             vec![at, at + Vector2::new(cos, -sin) * TICK]
@@ -338,50 +285,21 @@ impl Map {
         self.sheet.name(Look::Line(HEADING), "heading after a step");
     }
 
-    /// Draws the samples, the first `given` of which were given. Along a front the others are small.
-    pub(crate) fn samples(&mut self, samples: &[Dot], given: usize) {
-        for (k, dot) in samples.iter().enumerate() {
+    /// The samples, the given ones with their names.
+    fn samples(&mut self) {
+        for (k, dot) in self.picture.samples.iter().enumerate() {
             let at = self.axes.at(dot.at);
-            let sign = dot.label.sign();
-            let (look, meaning, radius) = if k < given {
-                self.beside(&format!("p{}", k + 1), at, 14.0);
-                (Look::Given(dot.label), format!("given beforehand, label {sign:+}"), 8.0)
-            } else if dot.sought {
-                let meaning = format!("label {sign:+}, while the front was sought");
-                (Look::Faint(dot.label), meaning, 3.0)
-            } else {
-                let look = if self.follows { Look::Small } else { Look::Read };
-                (look(dot.label), format!("label {sign:+} was read here"), 5.0)
-            };
-            if let Some(ring) = dot.ring {
-                let meaning = match ring {
-                    Ring::Wrong => "ringed: the label is wrong",
-                    Ring::Disagrees => "ringed: disagrees with the line",
-                    Ring::Against => "dashed ring: disagrees with the best line",
-                    Ring::Refutes => "double ring: no line left has this label here",
-                };
-                let is_small = self.follows && ring == Ring::Wrong;
-                let ring = if is_small { Look::Wrong } else { Look::Ringed(ring) };
-                if self.has_space(ring, at, 16.0) {
-                    self.sheet.mark(ring, at);
-                }
-                self.sheet.name(ring, meaning);
+            if k < self.picture.given {
+                self.words.push((format!("p{}", k + 1), at));
             }
-            if k < given || self.has_space(look, at, 8.0) {
-                self.sheet.mark(look, at);
+            for mark in dot.ring.into_iter().chain([dot.mark]) {
+                self.mark(mark, at);
             }
-            self.sheet.name(look, meaning);
-            let radius = match dot.ring {
-                None => radius,
-                Some(Ring::Refutes) => 13.0,
-                Some(_) => 10.0,
-            };
-            self.placing.mark(at, radius);
         }
     }
 
-    /// All of the area in a corner with few of the places of a track, and what part of it is shown.
-    pub(crate) fn inset(&mut self, track: &[Point2<f64>]) {
+    /// All of the area in a corner with few of the places of the track, and what part of it is shown.
+    fn inset(&mut self) {
         const SIDE: f64 = 120.0;
         const OFF: f64 = 8.0;
         if !self.is_part {
@@ -389,7 +307,7 @@ impl Map {
         }
         let frame = self.axes.frame();
         self.sheet.close(&frame);
-        let [min, max] = ends(&self.area);
+        let [min, max] = ends(&self.picture.area);
         let scale = SIDE / (max - min).amax();
         let half = (max - min) * scale / 2.0;
         let off = frame.half - half - Vector2::repeat(OFF);
@@ -398,7 +316,7 @@ impl Map {
             middle: frame.middle + Vector2::new(x * off.x, y * off.y),
             half,
         });
-        let spots = self.spots(track);
+        let spots = self.spots(&self.picture.places());
         let hidden = |it: &Frame| spots.iter().filter(|at| it.meets(&[**at, **at])).count();
         let Some(place) = boxes.into_iter().min_by_key(hidden) else { return };
         let corner = Spot::new(place.middle.x - half.x, place.middle.y + half.y);
@@ -426,25 +344,23 @@ impl Map {
     }
 
     /// The numbers of steps, after names have found their places; then the figure is complete.
-    pub(crate) fn finish(mut self, stops: &[Stop]) -> String {
-        for (words, at, size) in std::mem::take(&mut self.words) {
-            let frame = Vector2::new(width(&words, size) + 2.0, size);
-            if let Some(found) = self.placing.place(at, frame, 6.0, REACH) {
-                self.sheet.words(
-                    &words,
-                    foot(&found) - Vector2::new(0.0, 2.0),
-                    size,
-                    Anchor::Middle,
-                );
+    fn finish(mut self) -> String {
+        const WORDS: f64 = 14.0;
+        const REACH: f64 = 90.0;
+        let named = self.picture.words.iter().map(|(word, at)| (word.clone(), self.axes.at(*at)));
+        for (words, at) in self.words.into_iter().chain(named) {
+            let size = Vector2::new(width(&words, WORDS) + 2.0, WORDS);
+            if let Some(found) = self.placing.place(at, size, 6.0, REACH) {
+                let foot = foot(&found) - Vector2::new(0.0, 2.0);
+                self.sheet.words(&words, foot, WORDS, Anchor::Middle);
             }
         }
+        let stops = &self.picture.stops;
         let spots: Vec<_> = stops.iter().map(|stop| self.axes.at(stop.at)).collect();
         numbers::draw(&mut self.sheet, &mut self.placing, &spots);
         self.axes.draw(&mut self.sheet, ["x, metres", "z, metres"]);
-        if self.area.sides().next().is_some() && !self.is_part {
-            let mut corners = self.spots(&Polygon::from(self.area).0);
-            corners.extend(corners.first().copied());
-            self.sheet.ways(BORDER, [&corners[..]]);
+        if self.picture.area.sides().next().is_some() && !self.is_part {
+            self.sheet.ways(BORDER, [&self.border[..]]);
         }
         self.sheet.finish()
     }

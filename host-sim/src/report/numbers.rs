@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use crate::report::look::Look;
+use crate::report::look::{Look, NUMBER_OF_STEP};
 use crate::report::placing::{Placing, foot};
 use crate::report::shapes::{NUMBER, Spot, width};
 use crate::report::sheet::Sheet;
@@ -53,10 +53,10 @@ pub(crate) fn draw(sheet: &mut Sheet, placing: &mut Placing, stops: &[Spot]) {
         sheet.number(&name, foot(&frame) - Vector2::new(0.0, 0.5));
     }
     if count > 0 {
-        let meaning = match left_out {
-            0 => "number of the step that ends here".to_owned(),
-            _ => format!("number of the step that ends here; left out where too tight: {left_out}"),
-        };
-        sheet.name(Look::Number, meaning);
+        let mut meaning = NUMBER_OF_STEP.meaning.to_owned();
+        if left_out > 0 {
+            meaning += &format!("; left out where too tight: {left_out}");
+        }
+        sheet.name(Look::Mark(NUMBER_OF_STEP), meaning);
     }
 }

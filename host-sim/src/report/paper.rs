@@ -10,10 +10,9 @@ use crate::mission::given::Lines;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS, PAPER_NOISY};
 use crate::report::ground::Ground;
-use crate::report::look::Look;
-use crate::report::map::Map;
-use crate::report::picture::{Dot, Kind, Picture, Truth};
-use crate::report::style::{self, Fill, Stroke, TRUTH};
+use crate::report::look;
+use crate::report::picture::{Dot, Drawn, Picture};
+use crate::report::style::{BOUND, Stroke, TRUTH, dashed};
 use crate::world::polygon::Polygon;
 
 /// How many figures the paper has.
@@ -25,9 +24,8 @@ const BAND: f64 = 4.0;
 /// A walk of 27 labels of which four of +1 and three of -1 are flipped, as in the paper's Figure 2.
 const WALK_SEED: u64 = 292;
 
-const BOUND: Stroke = style::of_line(Kind::Bound);
-const RAY: Stroke = Stroke { class: "ray", colour: "#5b2a86", width: 1.4, dashes: "7 3" };
-const ANGLE: Stroke = Stroke { class: "angle", colour: "#5b2a86", width: 1.1, dashes: "" };
+const RAY: Stroke = dashed("ray", "#5b2a86", 1.4, "7 3");
+const ANGLE: Stroke = dashed("angle", "#5b2a86", 1.1, "");
 
 /// One of the figures as an SVG document.
 ///
@@ -55,37 +53,26 @@ fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
     Recording::of(&change(scenario::parse("", text, Overrides::default())?))
 }
 
-/// A map of a mission with the ground of either label, as the true line divides it.
-fn divided(title: &str, note: &str, picture: &Picture) -> Result<(Map, Line)> {
-    let truth = picture.truth.as_ref().and_then(Truth::line);
-    let truth = truth.context("a mission without a line")?;
-    let mut map = Map::new(title, Some(note), &picture.area, &[]);
-    for label in [Label::Positive, Label::Negative] {
-        let side = Polygon::from(picture.area).clip(&truth, f64::from(label.sign()));
-        map.fill(Fill::Of(label), &[&side.0], &format!("ground whose label is {:+}", label.sign()));
-    }
-    Ok((map, truth))
-}
-
-/// The line, the path, the samples: what is left to draw of a mission.
-fn finish(mut map: Map, picture: &Picture, truth: &Line) -> String {
-    map.line(truth, TRUTH, "true line, which the robot is to find", None);
-    let (start, stops) =
-        picture.path.as_ref().map_or((None, &[][..]), |(at, stops)| (Some(*at), stops));
-    if let Some(start) = start {
-        map.path(start, stops);
-    }
-    map.samples(&picture.samples, picture.given);
-    map.finish(stops)
+/// A mission with the ground of either label, as the true line divides it.
+fn divided(title: &str, note: &str, recording: &Recording) -> Result<(Picture, Line)> {
+    let truth = *recording.mission.world.line().context("a mission without a line")?;
+    let mut picture = Picture::of(title, recording);
+    let side = |side| Polygon::from(picture.area).clip(&truth, side);
+    picture.ground = Ground::Labelled([side(1.0), side(-1.0)]);
+    picture.says = ["ground whose label is", ""];
+    picture.note = note.to_owned();
+    picture.lines.clear();
+    let sought = "true line, which the robot is to find";
+    picture.truth.iter_mut().for_each(|it| it.name = sought.to_owned());
+    Ok((picture, truth))
 }
 
 /// Figure 1, "Schematic for the motion planning problem": six labels on the way, three of each.
 fn task() -> Result<String> {
     let six = PAPER_NOISELESS.replace("steps = 10", "steps = 6");
-    let picture = Picture::of("", &fly(&six, Mission::by_lookahead)?);
     let note = "Four labels are given. A robot starts at p1 and reads more, to find the line that divides them";
-    let (map, truth) = divided(&title(1, "the task"), note, &picture)?;
-    Ok(finish(map, &picture, &truth))
+    let recording = fly(&six, Mission::by_lookahead)?;
+    Ok(divided(&title(1, "the task"), note, &recording)?.0.svg())
 }
 
 /// A walk that ignores its labels, which are sometimes wrong near the line.
@@ -99,14 +86,13 @@ fn walk() -> Result<Recording> {
 
 /// Figure 2, "Schematic for the motion planning problem with noisy data": 27 labels, seven of them flipped.
 fn noisy_task() -> Result<String> {
-    let picture = Picture::of("", &walk()?);
     let note = "Near the line labels are wrong 3 times in 10. The robot walks without heeding them";
-    let (mut map, truth) = divided(&title(2, "wrong labels"), note, &picture)?;
+    let (mut picture, truth) = divided(&title(2, "wrong labels"), note, &walk()?)?;
     let [a, b, c] = truth.coefficients();
     let shifted = |by: f64| Line::from_coefficients(a, b, c + by).context("a line");
-    let band = Polygon::from(picture.area).clip(&shifted(BAND)?, 1.0).clip(&shifted(-BAND)?, -1.0);
-    map.fill(Fill::Doubtful, &[&band.0], "labels may be wrong here");
-    Ok(finish(map, &picture, &truth))
+    let area = Polygon::from(picture.area);
+    picture.doubtful = area.clip(&shifted(BAND)?, 1.0).clip(&shifted(-BAND)?, -1.0);
+    Ok(picture.svg())
 }
 
 /// The points of Figure 3, by what the text says of their slopes: `p4` lies a little lower than `p1`.
@@ -132,32 +118,27 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
             positive.len()
         )
     };
-    let mut map = Map::new(title, Some(note), &area, &[]);
     let support: Vec<_> =
         recording.belief.version_space().into_iter().flat_map(Lines::support).collect();
-    map.ground(&Ground::certain(area, &support), false);
+    let mut lines = Vec::new();
     for (name, from, to) in [("l13", p1, p3), ("l14", p1, p4), ("l23", p2, p3), ("l24", p2, p4)] {
         let way = to - from;
         let line = Line::through(*from, Vector2::new(-way.y, way.x)).context("two points")?;
-        map.line(
-            &line,
-            BOUND,
-            "l13 to l24, bounds of the line: through the points named",
-            Some(name),
-        );
+        let meaning = "l13 to l24, bounds of the line: through the points named";
+        lines.push(Drawn::across(area, line, BOUND, meaning).beside(name));
     }
-    map.line(truth, TRUTH, "true line", None);
-    for label in [Label::Negative, Label::Positive] {
-        map.mean(Look::Given(label), format!("one of the four points, label {:+}", label.sign()));
-    }
-    let dots = [
-        (p1, Label::Negative),
-        (p2, Label::Positive),
-        (p3, Label::Positive),
-        (p4, Label::Negative),
-    ];
-    map.samples(&dots.map(|(at, label)| Dot { at: *at, label, ring: None, sought: false }), 4);
-    Ok(map.finish(&[]))
+    lines.push(Drawn::across(area, *truth, TRUTH, "true line"));
+    let one = |at: &Point2<f64>, label, meaning| Dot::new(*at, look::given(label).meaning(meaning));
+    let negative = |at| one(at, Label::Negative, "one of the four points, label -1");
+    let positive = |at| one(at, Label::Positive, "one of the four points, label +1");
+    let picture = Picture {
+        ground: Ground::certain(area, &support),
+        samples: vec![negative(p1), positive(p2), positive(p3), negative(p4)],
+        given: 4,
+        lines,
+        ..Picture::bare(title, note, area)
+    };
+    Ok(picture.svg())
 }
 
 /// Figure 3, "Region of certainty from the four given points".
@@ -183,9 +164,8 @@ fn candidates() -> Result<String> {
     let recording = walk()?;
     let mut picture =
         Picture::of_candidates(&title(5, "which line?"), &recording).context("hypotheses")?;
-    picture.note = Some(
-        "The labels of Figure 2: several lines violate about as few, and one is true".to_owned(),
-    );
+    picture.note =
+        "The labels of Figure 2: several lines violate about as few, and one is true".to_owned();
     // The paper's l3 is the one that its support vector machine finds.
     for (line, name) in picture.lines.iter_mut().zip(["l3", "l1", "l2"]) {
         line.name = format!("{name}: {}", line.name);
@@ -197,9 +177,8 @@ fn candidates() -> Result<String> {
 /// Figure 6, "Analysis of the problem using analytical geometry": the closest two opposite labels in polar coordinates.
 fn polar() -> Result<String> {
     let recording = fly(PAPER_NOISELESS, Mission::as_printed)?;
-    let picture = Picture::of("", &recording);
     let note = "Opposite labels come closer: then the angles and distances of two meet on the line";
-    let (mut map, truth) = divided(&title(6, "why it converges"), note, &picture)?;
+    let (mut picture, truth) = divided(&title(6, "why it converges"), note, &recording)?;
     let taken = &recording.belief.samples()[picture.given..];
     let of =
         |label| taken.iter().filter(move |s| s.label == label).map(|s| Point2::<f64>::from(s.site));
@@ -209,7 +188,8 @@ fn polar() -> Result<String> {
     let (origin, reach) = (Point2::origin(), 6.0);
     for (k, at) in [(1, p), (2, q)] {
         let way = at - origin;
-        map.stretch(&[origin, at], RAY, "distances r1 and r2 of the closest two from the origin");
+        let meaning = "distances r1 and r2 of the closest two from the origin";
+        picture.lines.push(Drawn::new(meaning, RAY, vec![vec![origin, at]]));
         let angle = libm::atan2(way.y, way.x);
         let radius = reach - 2.2 * f64::from(k - 1);
         let on = |part: u32| {
@@ -217,14 +197,13 @@ fn polar() -> Result<String> {
             origin + Vector2::new(cos, sin) * radius
         };
         let arc: Vec<_> = (0..=24).map(on).collect();
-        map.stretch(&arc, ANGLE, "their angles θ1 and θ2");
-        map.name(&format!("θ{k}"), arc[8]);
-        map.name(&format!("r{k}"), origin + way * 0.75);
-        map.name(&format!("p{k},ε"), at);
+        let names = [("θ", "", arc[8]), ("r", "", origin + way * 0.75), ("p", ",ε", at)];
+        picture.words.extend(names.map(|(name, of, at)| (format!("{name}{k}{of}"), at)));
+        picture.lines.push(Drawn::new("their angles θ1 and θ2", ANGLE, vec![arc]));
     }
-    map.line(&truth, TRUTH, "true line", None);
-    map.samples(&picture.samples[picture.given..], 0);
-    Ok(map.finish(&[]))
+    picture.lines.push(Drawn::across(picture.area, truth, TRUTH, "true line"));
+    picture.samples.drain(..picture.given);
+    Ok(Picture { truth: Vec::new(), start: None, stops: Vec::new(), given: 0, ..picture }.svg())
 }
 
 /// Figure 7, "Path of the Agent with unicycle model and noiseless observations".
@@ -232,10 +211,9 @@ fn noiseless() -> Result<String> {
     let recording = fly(PAPER_NOISELESS, Mission::as_printed)?;
     let mut picture =
         Picture::of(&title(7, "true labels"), &recording).with_printed_estimate(&recording);
-    picture.note = Some(
+    picture.note =
         "The path of the unicycle with noiseless observations: Algorithm 1 as printed, 10 steps"
-            .to_owned(),
-    );
+            .to_owned();
     Ok(picture.svg())
 }
 
@@ -243,9 +221,8 @@ fn noiseless() -> Result<String> {
 fn noisy() -> Result<String> {
     let recording = fly(PAPER_NOISY, Mission::as_printed)?;
     let mut picture = Picture::of(&title(8, "labels true 7 times in 10"), &recording);
-    picture.note = Some(
+    picture.note =
         "The path of the unicycle with noisy observations: Algorithm 2 as printed, 10 steps"
-            .to_owned(),
-    );
+            .to_owned();
     Ok(picture.svg())
 }

@@ -5,49 +5,58 @@ use planner_core::belief::estimate;
 use planner_core::belief::evidence::Alarm;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
 use planner_core::link::message::MissionArea;
-use planner_core::{
-    AnyVehicle, Area, Label, Line, LocalLine, PosteriorView, Reading, Sample, Site, Stage,
-};
+use planner_core::{AnyVehicle, Area, Label, Line, PosteriorView, Reading, Sample, Site, Stage};
+use serde::Serialize;
 
 use crate::mission::definition::{Mission, Table};
 use crate::mission::map::State;
 use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
 use crate::mission::results::StepResult;
-pub use crate::report::ground::Ground;
-use crate::report::ribbon::Ribbon;
+use crate::report::ground::{CERTAIN, Ground, REFUTED};
+use crate::report::look::{self, AGAINST, Mark, REFUTES, SMALL_WRONG, WRONG};
+use crate::report::pieces::Pieces;
+use crate::report::style::{
+    BOUND, CANDIDATES, ESTIMATE, FEWEST, FRONT, PAST_TRUTH, PRINTED, Stroke, TRUE_FRONT, TRUTH,
+};
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 use crate::world::reading;
 use crate::world::way::Way;
 
-/// What to draw.
+/// What a map shows: the one description that figures, pages and logs draw.
 #[derive(Clone, Debug)]
 pub struct Picture {
     /// The title.
     pub title: String,
     /// What the legend says of the samples, if anything.
-    pub note: Option<String>,
+    pub note: String,
     /// The ground to show.
     pub area: MissionArea,
     /// What is known of it.
     pub ground: Ground,
-    /// Whether a label contradicts that.
-    pub is_refuted: bool,
+    /// What the legend says of ground that has a label, and of the white rest.
+    pub says: [&'static str; 2],
+    /// Where labels may be wrong, if that is to be seen.
+    pub doubtful: Polygon,
     /// The samples, with the labels that were seen.
     pub samples: Vec<Dot>,
     /// How many of them were given, not taken on the way.
     pub given: usize,
-    /// Where a mission began, and the ends of its steps.
-    pub path: Option<(Point2<f64>, Vec<Stop>)>,
+    /// Where a mission began.
+    pub start: Option<Point2<f64>>,
+    /// The ends of its steps.
+    pub stops: Vec<Stop>,
     /// The true boundary, where known.
-    pub truth: Option<Truth>,
+    pub truth: Vec<Drawn>,
     /// Other lines, with their names.
-    pub lines: Vec<Named>,
+    pub lines: Vec<Drawn>,
+    /// Short words beside places.
+    pub words: Vec<(String, Point2<f64>)>,
     /// Whether it is of a front, whether or not that was found.
     pub follows: bool,
     /// The map of a front, if one was followed.
-    pub front: Ribbon,
+    pub front: Pieces,
 }
 
 /// A sample.
@@ -55,86 +64,16 @@ pub struct Picture {
 pub struct Dot {
     /// Where.
     pub at: Point2<f64>,
-    /// The label that was seen.
-    pub label: Label,
-    /// Why it has a ring, if it has one.
-    pub ring: Option<Ring>,
-    /// Whether it was read where a front was sought.
-    pub sought: bool,
+    /// How it is marked, by its label.
+    pub(crate) mark: Mark,
+    /// A ring about it, if it has one.
+    pub(crate) ring: Option<Mark>,
 }
 
-/// What a ring about a sample says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ring {
-    /// The label is known to be false.
-    Wrong,
-    /// The label disagrees with the line. The truth is not known.
-    Disagrees,
-    /// The label disagrees with the line that the fewest do.
-    Against,
-    /// No line left has this label here.
-    Refutes,
-}
-
-/// The true boundary.
-#[derive(Clone, Debug)]
-pub enum Truth {
-    /// A line that stays where it is.
-    Line(Line),
-    /// Any other.
-    Drawn(Vec<Outline>),
-}
-
-/// A boundary at some time.
-#[derive(Clone, Debug)]
-pub struct Outline {
-    /// What it is, for the legend.
-    pub name: &'static str,
-    /// Whether it is no longer there in the end.
-    pub is_past: bool,
-    /// Its parts in the area.
-    pub ways: Vec<Way>,
-}
-
-impl Truth {
-    /// The boundary of a mission's world: a line that moves at the start and after so many motions.
-    fn of(mission: &Mission, motions: usize) -> Option<Self> {
-        let world = &mission.world;
-        if let Some(line) = world.line() {
-            return Some(Self::Line(*line));
-        }
-        let area = Polygon::from(mission.config.area);
-        let at = |motions, name, is_past| {
-            let ways = world.after(motions).ways(&area);
-            Outline { name, is_past, ways }
-        };
-        let outlines = if world.moves() {
-            let names = if world.is_line() {
-                ["true line at the start", "true line at the end"]
-            } else {
-                ["true boundary at the start", "true boundary at the end"]
-            };
-            vec![at(0, names[0], true), at(motions, names[1], false)]
-        } else {
-            vec![at(0, "true boundary", false)]
-        };
-        world.is_known().then_some(Self::Drawn(outlines))
-    }
-
-    /// The line, if it is one that stays where it is.
-    pub const fn line(&self) -> Option<Line> {
-        match self {
-            Self::Line(line) => Some(*line),
-            Self::Drawn(_) => None,
-        }
-    }
-
-    /// What else is drawn.
-    pub fn outlines(&self) -> &[Outline] {
-        match self {
-            Self::Line(_) => &[],
-            Self::Drawn(outlines) => outlines,
-        }
+impl Dot {
+    /// A sample without a ring.
+    pub(crate) fn new(at: impl Into<Point2<f64>>, mark: Mark) -> Self {
+        Self { at: at.into(), mark, ring: None }
     }
 }
 
@@ -155,68 +94,107 @@ pub struct Stop {
     pub lacks_reading: bool,
 }
 
-/// A line with a name for the legend.
-#[derive(Clone, Debug)]
-pub struct Named {
-    /// The name.
+/// A line or a boundary.
+#[derive(Clone, Debug, Serialize)]
+pub struct Drawn {
+    /// What it is, for the legend.
     pub name: String,
-    /// The line.
-    pub line: Line,
-    /// What it is.
-    pub kind: Kind,
+    /// How it is drawn.
+    pub(crate) stroke: Stroke,
+    /// Its parts in the area.
+    pub ways: Vec<Way>,
     /// A short word beside it, if any.
+    #[serde(skip)]
     pub beside: Option<String>,
 }
 
-/// The kind of a line, for its colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// The estimate that is recommended.
-    Estimate,
-    /// The paper's printed estimate.
-    Printed,
-    /// An end of the credible slopes.
-    Bound,
-    /// The plain maximum margin.
-    MaximumMargin,
-    /// The second-best candidate.
-    SecondBest,
-    /// The third-best candidate.
-    ThirdBest,
-    /// The line that the fewest labels disagree with, if no line explains them all.
-    Fewest,
+impl Drawn {
+    /// Some ways.
+    pub(crate) fn new(name: impl Into<String>, stroke: Stroke, ways: Vec<Way>) -> Self {
+        Self { name: name.into(), stroke, ways, beside: None }
+    }
+
+    /// A straight line across an area.
+    pub(crate) fn across(
+        area: MissionArea,
+        line: impl Into<Line>,
+        stroke: Stroke,
+        name: impl Into<String>,
+    ) -> Self {
+        let chord = Polygon::from(area).chord(&line.into());
+        Self::new(name, stroke, chord.into_iter().map(Vec::from).collect())
+    }
+
+    /// The same with a short word beside it.
+    pub(crate) fn beside(self, word: impl Into<String>) -> Self {
+        Self { beside: Some(word.into()), ..self }
+    }
 }
 
-impl Named {
-    /// The estimate that is recommended.
-    pub fn estimate(name: &str, line: Option<LocalLine>) -> Option<Self> {
-        let (name, kind) = (format!("estimate: {name}"), Kind::Estimate);
-        Some(Self { name, line: line?.into(), kind, beside: None })
+/// The boundary of a mission's world, at the start and after so many motions if it moves.
+fn truth(mission: &Mission, motions: usize) -> Vec<Drawn> {
+    let (world, area) = (&mission.world, mission.config.area);
+    let there = if mission.algorithm.seeks_line() { TRUTH } else { TRUE_FRONT };
+    if let Some(line) = world.line() {
+        return vec![Drawn::across(area, *line, there, "true line")];
+    }
+    if !world.is_known() {
+        return Vec::new();
+    }
+    let what = if world.is_line() && world.moves() { "true line" } else { "true boundary" };
+    let at = |motions, when, stroke| {
+        let ways = world.after(motions).ways(&area.into());
+        Drawn::new(format!("{what}{when}"), stroke, ways)
+    };
+    if world.moves() {
+        vec![at(0, " at the start", PAST_TRUTH), at(motions, " at the end", there)]
+    } else {
+        vec![at(0, "", there)]
     }
 }
 
 impl Picture {
+    /// The bare area.
+    pub(crate) fn bare(title: &str, note: impl Into<String>, area: impl Into<MissionArea>) -> Self {
+        Self {
+            title: title.to_owned(),
+            note: note.into(),
+            area: area.into(),
+            ground: Ground::Plain,
+            says: CERTAIN,
+            doubtful: Polygon(Vec::new()),
+            samples: Vec::new(),
+            given: 0,
+            start: None,
+            stops: Vec::new(),
+            truth: Vec::new(),
+            lines: Vec::new(),
+            words: Vec::new(),
+            follows: false,
+            front: Pieces::default(),
+        }
+    }
+
     /// A mission: what is certain, the path, the labels, the lines.
     pub fn of(title: &str, recording: &Recording) -> Self {
         let Recording { mission, results, belief, .. } = recording;
         let area = mission.config.area;
-        let centre = belief.estimates().centre;
         let mut lines = Vec::new();
-        if belief.version_space().is_some() {
-            lines.extend(Named::estimate("centre of the version space", centre));
+        if let Some(centre) = belief.estimates().centre {
+            let estimate = |name| Drawn::across(area, centre, ESTIMATE, name);
+            let space = belief.version_space();
+            lines.extend(space.map(|_| estimate("estimate: centre of the version space")));
+            let table = belief.hypotheses();
+            lines.extend(table.map(|_| estimate("estimate: posterior mean")));
         }
-        if let Some(table) = belief.hypotheses() {
-            lines.extend(Named::estimate("posterior mean", centre));
-            lines.extend(bounding(table));
-        }
+        lines.extend(belief.hypotheses().into_iter().flat_map(|table| bounding(table, area)));
         let diagnosis = results.end.diagnosis.as_deref();
-        let fewest = diagnosis.and_then(|it| as_line(it.line.coefficients));
-        lines.extend(fewest.map(|line| Named {
-            name: "line that the fewest labels disagree with".to_owned(),
-            line,
-            kind: Kind::Fewest,
-            beside: None,
-        }));
+        let fewest = diagnosis.and_then(|it| {
+            let [a, b, c] = it.line.coefficients;
+            Line::from_coefficients(a, b, c)
+        });
+        let name = "line that the fewest labels disagree with";
+        lines.extend(fewest.map(|line| Drawn::across(area, line, FEWEST, name)));
         // The number of the step that took a sample; given ones were true at the start.
         let steps = (1..).zip(recording.steps.iter().zip(&results.steps));
         let taken: Vec<_> = steps
@@ -244,52 +222,65 @@ impl Picture {
         } else {
             (&belief.samples()[..given], &belief.samples()[first..])
         };
-        let samples = oracle.iter().chain(read);
         let numbers: Vec<usize> = if follows || mission.world.moves() {
-            let of_steps = samples.clone().skip(given).map(number);
-            std::iter::repeat_n(0, given).chain(of_steps).collect()
+            read.iter().map(number).collect()
         } else {
-            vec![0; given + read.len()]
+            vec![0; read.len()]
         };
         let disagrees = |s: &Sample| {
             let is_above = |line: &Line| line.distance(s.site.into()) > 0.0;
             fewest.as_ref().is_some_and(|it| is_above(it) != (s.label == Label::Positive))
         };
-        let dot = |(s, number): (&Sample, usize)| {
+        let dot = |s: &Sample, number, mark: fn(Label) -> Mark| {
             let is_wrong = !mission.world.after(number).agrees(s.site, s.label);
-            let wrong = is_wrong.then_some(Ring::Wrong);
-            let ring = wrong.or_else(|| disagrees(s).then_some(Ring::Against));
+            let wrong = is_wrong.then_some(if follows { SMALL_WRONG } else { WRONG });
+            let ring = wrong.or_else(|| disagrees(s).then_some(AGAINST));
+            Dot { ring, ..Dot::new(s.site, mark(s.label)) }
+        };
+        let of_step = |(s, number): (&Sample, usize)| {
             let step = number.checked_sub(1).and_then(|it| results.steps.get(it));
             let seeks = step.is_some_and(|it| it.problem.as_deref() == Some("seek"));
-            Dot { at: s.site.into(), label: s.label, ring, sought: follows && seeks }
+            let of_front = if seeks { look::sought } else { look::small };
+            dot(s, number, if follows { of_front } else { look::read })
         };
         // No belief takes in the labels of an audit.
         let audit = results.end.goal.and_then(|goal| goal.audit);
         let refuted = audit.filter(|it| !it.is_by_alarm).and_then(|it| it.refuted);
         let audited = (1..).zip(&recording.steps).filter_map(|(number, step)| {
             let is_of_audit = step.motion.stage == Some(Stage::Audit);
-            let Some(Reading::Side(label)) = step.reading.filter(|_| is_of_audit) else {
-                return None;
-            };
-            let site = step.pose.site;
-            let dot = dot((&Sample { site, label }, number));
-            let refutes = (refuted == Some(number)).then_some(Ring::Refutes);
-            Some(Dot { ring: refutes.or(dot.ring), ..dot })
+            let s = sample((step.pose.site, step.reading.filter(|_| is_of_audit)?))?;
+            let dot = of_step((&s, number));
+            Some(if refuted == Some(number) { Dot { ring: Some(REFUTES), ..dot } } else { dot })
         });
+        let oracle = oracle.iter().map(|s| dot(s, 0, look::given));
+        let samples = oracle.chain(read.iter().zip(numbers).map(of_step));
         Self {
-            title: title.to_owned(),
-            note: Some(note(recording)),
-            area,
             ground: Ground::of(&**belief, area),
-            is_refuted: audit.is_some_and(|it| it.refuted.is_some()),
-            samples: samples.zip(numbers).map(dot).chain(audited).collect(),
+            says: if audit.is_some_and(|it| it.refuted.is_some()) { REFUTED } else { CERTAIN },
+            samples: samples.chain(audited).collect(),
             given,
-            path: Some((Point2::from(mission.start.site), stops(recording))),
-            truth: Truth::of(mission, recording.steps.len()),
+            start: Some(Point2::from(mission.start.site)),
+            stops: stops(recording),
+            truth: truth(mission, recording.steps.len()),
             lines,
             follows,
-            front: Ribbon::of(results),
+            front: Pieces::of(results),
+            ..Self::bare(title, note(recording), area)
         }
+    }
+
+    /// A front without a mission, of the area around its samples and its map. Of very many vertices it shows some. `None`
+    /// without an area.
+    pub(crate) fn of_front(
+        title: &str,
+        note: String,
+        samples: Vec<Dot>,
+        front: Pieces,
+    ) -> Option<Self> {
+        let front = front.some();
+        let places = samples.iter().map(|it| it.at).chain(front.ways().flatten());
+        let area = area_of(places)?;
+        Some(Self { samples, follows: true, front, ..Self::bare(title, note, area) })
     }
 
     /// The same with the paper's printed estimate, the bisector, before the recommended one. Of labels that may
@@ -298,20 +289,15 @@ impl Picture {
     pub fn with_printed_estimate(mut self, recording: &Recording) -> Self {
         let belief = &recording.belief;
         let bisector = belief.version_space().and_then(|_| belief.estimates().bisector);
-        let named = bisector.map(|line| Named {
-            name: "estimate as printed: bisector".to_owned(),
-            line: line.into(),
-            kind: Kind::Printed,
-            beside: None,
-        });
-        self.lines.splice(0..0, named);
+        let name = "estimate as printed: bisector";
+        let printed = bisector.map(|line| Drawn::across(self.area, line, PRINTED, name));
+        self.lines.splice(0..0, printed);
         self
     }
 
     /// The lines that violate the fewest labels of a noisy mission, with their numbers of violations. The first is the
     /// one that a plain maximum margin would choose.
     pub fn of_candidates(title: &str, recording: &Recording) -> Option<Self> {
-        const KINDS: [Kind; 3] = [Kind::MaximumMargin, Kind::SecondBest, Kind::ThirdBest];
         let table = recording.belief.hypotheses()?;
         let taken = &table.samples()[table.given().len()..];
         let violations = |line: &Line| {
@@ -327,20 +313,36 @@ impl Picture {
             })
             .collect();
         candidates.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.total_cmp(&a.2)));
-        let lines = candidates.into_iter().zip(KINDS).map(|((n, line, _), kind)| Named {
-            name: match kind {
-                Kind::MaximumMargin => format!("plain maximum margin; violations: {n}"),
-                _ => format!("another candidate; violations: {n}"),
-            },
-            line,
-            kind,
-            beside: Some(format!("{n}")),
-        });
-        let lines = lines.collect();
-        let note =
-            "Lines that the fewest labels contradict, and beside each how many do".to_owned();
         let all = Self::of(title, recording);
-        Some(Self { note: Some(note), ground: Ground::Plain, path: None, lines, ..all })
+        let lines = candidates.into_iter().zip(CANDIDATES).map(|((n, line, _), stroke)| {
+            let is_first = stroke == CANDIDATES[0];
+            let what = if is_first { "plain maximum margin" } else { "another candidate" };
+            let name = format!("{what}; violations: {n}");
+            Drawn::across(all.area, line, stroke, name).beside(n.to_string())
+        });
+        Some(Self {
+            note: "Lines that the fewest labels contradict, and beside each how many do".to_owned(),
+            ground: Ground::Plain,
+            start: None,
+            stops: Vec::new(),
+            lines: lines.collect(),
+            ..all
+        })
+    }
+
+    /// The mean front of its map.
+    pub(crate) fn mapped(&self) -> Drawn {
+        let moves = self.truth.iter().any(|it| it.stroke == PAST_TRUTH);
+        let mapped = if moves { "as it was when it was mapped" } else { "as it is mapped" };
+        Drawn::new(format!("the front {mapped}"), FRONT, self.front.ways().collect())
+    }
+
+    /// Places of the track and of the map, which may lie outside the area.
+    pub(crate) fn places(&self) -> Vec<Point2<f64>> {
+        let of_path = self.stops.iter().flat_map(|stop| stop.way.iter().copied().chain(stop.truly));
+        let of_front = self.front.ground().flatten().flatten();
+        let of_samples = self.samples.iter().map(|dot| dot.at);
+        self.start.into_iter().chain(of_path).chain(of_samples).chain(of_front).collect()
     }
 }
 
@@ -361,10 +363,6 @@ fn stops(Recording { mission, results, .. }: &Recording) -> Vec<Stop> {
         lacks_reading: step.label.is_none() && step.expected.is_some(),
     };
     results.steps.iter().map(stop).collect()
-}
-
-fn as_line([a, b, c]: [f64; 3]) -> Option<Line> {
-    Line::from_coefficients(a, b, c)
 }
 
 /// A reading as a sample, if it is of one side.
@@ -414,19 +412,15 @@ fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
 }
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
-fn bounding(table: &Table) -> Vec<Named> {
+fn bounding(table: &Table, area: MissionArea) -> Vec<Drawn> {
     let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
     let bounds = || posterior.members(&set).flat_map(|h| table.lines(h).bounds());
     let ends = [("l1", set.slope_arc.from()), ("l2", set.slope_arc.to())];
     let named = |(name, end): (&str, Vector)| {
         let bound = bounds().find(|bound| bound.along.cross(end) == 0)?;
-        Some(Named {
-            name: "l1 and l2, which bound the credible slopes".to_owned(),
-            line: bound.into(),
-            kind: Kind::Bound,
-            beside: Some(name.to_owned()),
-        })
+        let meaning = "l1 and l2, which bound the credible slopes";
+        Some(Drawn::across(area, bound, BOUND, meaning).beside(name))
     };
     ends.into_iter().filter_map(named).collect()
 }
@@ -438,7 +432,7 @@ pub fn area_around(samples: &[Sample]) -> Option<Area> {
 }
 
 /// The same of any places.
-pub(crate) fn area_of(places: impl Iterator<Item = Point2<f64>>) -> Option<Area> {
+fn area_of(places: impl Iterator<Item = Point2<f64>>) -> Option<Area> {
     const END: f64 = (LIMIT - 1) as f64 / UNITS_PER_METRE as f64;
     let [min, max] = around(places)?;
     let margin = Vector2::repeat(0.1 * (max - min).amax());

@@ -1,6 +1,7 @@
 //! The map of a front by its pieces, and as a file of vertices.
 
 use anyhow::Result;
+use nalgebra::{Point2, Vector2};
 
 use crate::mission::front::VertexRecord;
 use crate::mission::map::pieces;
@@ -9,7 +10,7 @@ use crate::mission::results::Results;
 /// The vertices of a map by its pieces, each vertex with the number of its step or row. A new piece begins where the
 /// front was not known after a step or a row.
 #[derive(Clone, Debug, Default)]
-pub struct Pieces(Vec<Vec<(usize, VertexRecord)>>);
+pub struct Pieces(pub(crate) Vec<Vec<(usize, VertexRecord)>>);
 
 /// The title of the column that says whose a vertex is.
 pub(crate) const ROBOT: &str = "robot";
@@ -23,9 +24,36 @@ impl Pieces {
         Self(pieces(&results.mapped()))
     }
 
-    /// The pieces in their order. None is empty.
-    pub(crate) fn iter(&self) -> impl Iterator<Item = &[(usize, VertexRecord)]> {
-        self.0.iter().map(Vec::as_slice)
+    /// The mean front, piece by piece.
+    pub(crate) fn ways(&self) -> impl Iterator<Item = Vec<Point2<f64>>> {
+        self.0.iter().map(|piece| piece.iter().map(|(_, it)| it.at()).collect())
+    }
+
+    /// The ground within the intervals of each piece: a polygon from each place to the next.
+    pub(crate) fn ground(&self) -> impl Iterator<Item = impl Iterator<Item = [Point2<f64>; 4]>> {
+        let between = |pair: &[(usize, VertexRecord)]| {
+            let [from, to] = [0, pair.len() - 1].map(|k| ends(&pair[k].1));
+            [from[0], to[0], to[1], from[1]]
+        };
+        self.0.iter().map(move |piece| piece.chunks(1).chain(piece.windows(2)).map(between))
+    }
+
+    /// Some of very many vertices, and the last of each piece.
+    pub(crate) fn some(mut self) -> Self {
+        const MOST: usize = 5_000;
+        let each = self.0.iter().map(Vec::len).sum::<usize>().div_ceil(MOST).max(1);
+        for piece in &mut self.0 {
+            let last = piece.last().copied();
+            *piece = piece.iter().step_by(each).copied().chain(last.filter(|_| each > 1)).collect();
+        }
+        self
+    }
+
+    /// A closed front, whose only piece ends where it begins.
+    pub(crate) fn closed(mut self) -> Self {
+        let begin = self.0.first().and_then(|piece| piece.first()).copied();
+        self.0.iter_mut().take(1).for_each(|piece| piece.extend(begin));
+        self
     }
 
     /// All vertices, each with the number of its piece, from 1, and that of its step or row.
@@ -70,6 +98,13 @@ impl Pieces {
     }
 }
 
+/// The ends of a vertex's 90 % interval, to the left and to the right.
+pub(crate) fn ends(vertex: &VertexRecord) -> [Point2<f64>; 2] {
+    let (sin, cos) = libm::sincos(vertex.heading);
+    let left = Vector2::new(-sin, cos) * vertex.half_width;
+    [vertex.at() + left, vertex.at() - left]
+}
+
 impl From<Vec<Vec<(usize, VertexRecord)>>> for Pieces {
     fn from(pieces: Vec<Vec<(usize, VertexRecord)>>) -> Self {
         Self(pieces)
@@ -106,7 +141,7 @@ mod tests {
             (".##..#.", &[2, 1]),
             ("#.#.#", &[1, 1, 1]),
         ] {
-            let lengths_found: Vec<_> = map(known).iter().map(<[_]>::len).collect();
+            let lengths_found: Vec<_> = map(known).0.iter().map(Vec::len).collect();
             assert_eq!(lengths_found, lengths, "{known}");
         }
     }

@@ -6,7 +6,7 @@ use svg::Document;
 use svg::node::element::path::Data;
 use svg::node::element::{Definitions, Group, Path, Pattern, Rectangle, SVG, Title};
 
-use crate::report::look::{Look, marker};
+use crate::report::look::{Look, NUMBER_OF_STEP, marker};
 use crate::report::placing::Frame;
 use crate::report::shapes::{Anchor, NUMBER, Spot, continued, outline, rounded, text, width};
 use crate::report::style::{self, Fill, HATCHES, INK, Stroke};
@@ -58,7 +58,7 @@ impl Sheet {
 
     /// A mark at a place.
     pub(crate) fn mark(&mut self, look: Look, at: Spot) {
-        self.add(look.mark(at));
+        self.add(look.at(at));
     }
 
     /// Ways, each through its places.
@@ -93,7 +93,7 @@ impl Sheet {
 
     /// The number of a step, its middle foot at a place.
     pub(crate) fn number(&mut self, words: &str, at: Spot) {
-        self.add(Look::Number.group().add(text(words, at, NUMBER, Anchor::Middle)));
+        self.add(Look::Mark(NUMBER_OF_STEP).group().add(text(words, at, NUMBER, Anchor::Middle)));
     }
 
     /// Words beside what they name.
@@ -125,7 +125,7 @@ impl Sheet {
             let x = if is_left { LEFT } else { LEFT + half };
             let at = Spot::new(x + 16.0, size.y + 12.0 + row * ROW);
             let spot = at + Vector2::new(26.0 + look.reach(), 4.5);
-            legend = legend.add(look.entry(at)).add(text(&meaning, spot, ENTRY, Anchor::Start));
+            legend = legend.add(look.at(at)).add(text(&meaning, spot, ENTRY, Anchor::Start));
             is_left = !is_left || is_wide;
             row += if is_left { 1.0 } else { 0.0 };
         }

@@ -2,9 +2,9 @@
 //! too, so that a figure can be read in black and white.
 
 use planner_core::Label;
+use serde::Serialize;
 
 use crate::report::bands::LEAST;
-use crate::report::picture::Kind;
 
 // Orange for +1 and blue for -1, as in the paper's Figure 1, in hues that colour-blind readers tell apart.
 const POSITIVE: &str = "#d55e00";
@@ -23,30 +23,55 @@ pub(crate) const SHADES_COUNT: usize = LEAST.len();
 const SHADES: [&str; SHADES_COUNT] = ["#f0e8f6", "#dccbe9", "#c3a5d7", "#a67cc2", "#8653a6"];
 
 /// How a line is drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Stroke {
     /// What it is, for programs that read the figure.
     pub(crate) class: &'static str,
+    #[serde(skip)]
     pub(crate) colour: &'static str,
+    #[serde(skip)]
     pub(crate) width: f64,
+    #[serde(skip)]
     pub(crate) dashes: &'static str,
 }
 
 pub(crate) const TRUTH: Stroke = solid("truth", "#000000", 2.2);
-pub(crate) const PAST_TRUTH: Stroke =
-    Stroke { class: "past-truth", colour: "#000000", width: 2.2, dashes: "2 5" };
+pub(crate) const PAST_TRUTH: Stroke = dashed("past-truth", "#000000", 2.2, "2 5");
 /// The front as it is mapped, and the true one, thin so that it does not hide the map.
 pub(crate) const FRONT: Stroke = solid("front", "#00784f", 2.2);
-pub(crate) const TRUE_FRONT: Stroke =
-    Stroke { class: "truth", colour: "#000000", width: 1.0, dashes: "4 5" };
+pub(crate) const TRUE_FRONT: Stroke = dashed("truth", "#000000", 1.0, "4 5");
 pub(crate) const PATH: Stroke = solid("path", "#4a4a4a", 1.1);
 pub(crate) const HEADING: Stroke = solid("heading", "#4a4a4a", 2.6);
 /// All of the area beside a part of it.
 pub(crate) const INSET: Stroke = solid("inset", INK, 1.2);
 pub(crate) const BORDER: Stroke = solid("border", INK, 0.8);
 
+/// The estimate that is recommended.
+pub(crate) const ESTIMATE: Stroke = dashed("estimate", "#00784f", 2.2, "9 5");
+/// The paper's printed estimate.
+pub(crate) const PRINTED: Stroke = dashed("printed-estimate", "#be003c", 2.0, "10 4 2 4");
+/// An end of the credible slopes.
+pub(crate) const BOUND: Stroke = dashed("bound", "#5b2a86", 1.6, "2 3");
+/// The plain maximum margin, and the candidates after it.
+pub(crate) const CANDIDATES: [Stroke; 3] = [
+    dashed("maximum-margin", "#be003c", 2.2, "9 5"),
+    dashed("second-best", "#5a5a5a", 1.8, "6 4 2 4"),
+    dashed("third-best", "#8a8a8a", 1.8, "2 4"),
+];
+/// The line that the fewest labels disagree with, if no line explains them all.
+pub(crate) const FEWEST: Stroke = dashed("fewest", "#be003c", 2.0, "3 3");
+
 const fn solid(class: &'static str, colour: &'static str, width: f64) -> Stroke {
-    Stroke { class, colour, width, dashes: "" }
+    dashed(class, colour, width, "")
+}
+
+pub(crate) const fn dashed(
+    class: &'static str,
+    colour: &'static str,
+    width: f64,
+    dashes: &'static str,
+) -> Stroke {
+    Stroke { class, colour, width, dashes }
 }
 
 /// How ground is filled.
@@ -148,25 +173,12 @@ pub(crate) fn faint(label: Label) -> &'static str {
     }
 }
 
-pub(crate) const fn of_line(kind: Kind) -> Stroke {
-    let (class, colour, width, dashes) = match kind {
-        Kind::Estimate => ("estimate", "#00784f", 2.2, "9 5"),
-        Kind::Printed => ("printed-estimate", "#be003c", 2.0, "10 4 2 4"),
-        Kind::Bound => ("bound", "#5b2a86", 1.6, "2 3"),
-        Kind::MaximumMargin => ("maximum-margin", "#be003c", 2.2, "9 5"),
-        Kind::SecondBest => ("second-best", "#5a5a5a", 1.8, "6 4 2 4"),
-        Kind::ThirdBest => ("third-best", "#8a8a8a", 1.8, "2 4"),
-        Kind::Fewest => ("fewest", "#be003c", 2.0, "3 3"),
-    };
-    Stroke { class, colour, width, dashes }
-}
-
 /// The curves of the planners of a campaign, one after the other: the hues of Okabe and Ito.
 pub(crate) const CURVES: [Stroke; 6] = [
-    Stroke { class: "curve-1", colour: "#0072b2", width: 2.0, dashes: "" },
-    Stroke { class: "curve-2", colour: "#d55e00", width: 2.0, dashes: "9 4" },
-    Stroke { class: "curve-3", colour: "#009e73", width: 2.0, dashes: "2 3" },
-    Stroke { class: "curve-4", colour: "#a0458a", width: 2.0, dashes: "10 4 2 4" },
-    Stroke { class: "curve-5", colour: "#7a6a00", width: 2.0, dashes: "5 3" },
-    Stroke { class: "curve-6", colour: "#333333", width: 2.0, dashes: "1 5" },
+    solid("curve-1", "#0072b2", 2.0),
+    dashed("curve-2", "#d55e00", 2.0, "9 4"),
+    dashed("curve-3", "#009e73", 2.0, "2 3"),
+    dashed("curve-4", "#a0458a", 2.0, "10 4 2 4"),
+    dashed("curve-5", "#7a6a00", 2.0, "5 3"),
+    dashed("curve-6", "#333333", 2.0, "1 5"),
 ];

@@ -5,11 +5,12 @@ use planner_core::belief::cells::bound;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Area, KeepOut, Label, Line, Sample};
+use serde::Serialize;
 
 use crate::world::extent::around;
 
 /// A convex polygon as its corners in order; empty when there are none.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Polygon(pub Vec<Point2<f64>>);
 
 impl From<Area> for Polygon {

@@ -6,8 +6,7 @@ use foxglove::messages::{
     Vector3,
 };
 
-use crate::report::log::messages::pose;
-use crate::report::page::scene::Place;
+use crate::report::log::messages::{Place, pose};
 
 /// Distance between two points of a line, as a share of the area's size.
 const SPACING: f64 = 0.004;

@@ -9,12 +9,14 @@ use foxglove::messages::{
     Color, CubePrimitive, LinePrimitive, SceneEntity, SceneUpdate, SpherePrimitive,
     TriangleListPrimitive, Vector3,
 };
+use nalgebra::Point2;
 use planner_core::Label;
 
+use crate::report::bands::Band;
+use crate::report::ground::Ground;
 use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
-use crate::report::page::scene::{BandRecord, Flight, GroundRecord, Mark, Place, Scene, SeenFront};
-use crate::report::picture::Kind;
-use crate::report::style;
+use crate::report::page::scene::{Flight, Scene, SeenFront};
+use crate::report::style::{self, ESTIMATE, FRONT, PATH, Stroke};
 
 /// Pixels.
 const THIN: f64 = 1.0;
@@ -27,16 +29,11 @@ const SAMPLE: f64 = 0.012;
 /// first appears later.
 pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let size = SAMPLE * flight.size();
-    let border = line(&flight.area, true, THIN, opaque(style::PATH.colour));
-    let keep_outs = flight.keep_outs.iter().map(|ring| fan(ring, opaque(KEEP_OUT)));
+    let border = line(&flight.area.0, true, THIN, of(PATH));
+    let keep_outs = flight.keep_outs.iter().map(|ring| fan(&ring.0, opaque(KEEP_OUT)));
     let mut entities = vec![
         SceneEntity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
-        samples(
-            "given",
-            0,
-            flight.given.iter().map(|Mark { at, label }| (*at, *label)),
-            1.5 * size,
-        ),
+        samples("given", 0, flight.given.iter().copied(), 1.5 * size),
     ];
     if let Some(truth) = &flight.truth {
         let line = line(&truth.ends, false, THICK, opaque(TRUTH));
@@ -44,7 +41,7 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     }
     for it in &flight.boundary {
         let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
-        entities.push(SceneEntity { lines: lines.collect(), ..entity(it.name, 0) });
+        entities.push(SceneEntity { lines: lines.collect(), ..entity(&it.name, 0) });
     }
     let follows = flight.scenes.iter().any(|it| it.front.is_some());
     for part in names(flight) {
@@ -60,8 +57,8 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
 /// The robot: a triangle that points ahead, in the robot's own frame.
 pub(super) fn robot(flight: &Flight) -> SceneEntity {
     let size = SAMPLE * flight.size();
-    let corners = [[1.5 * size, 0.0], [-size, size], [-size, -size]];
-    let border = line(&corners, true, THICK, opaque(style::PATH.colour));
+    let corners = [[1.5 * size, 0.0], [-size, size], [-size, -size]].map(Point2::from);
+    let border = line(&corners, true, THICK, of(PATH));
     SceneEntity { lines: vec![border], frame_id: ROBOT.to_owned(), ..entity("robot", 0) }
 }
 
@@ -114,7 +111,7 @@ fn path(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scene
         flight.scenes[steps.start + 1..=steps.end].iter().filter_map(|it| it.motion.as_ref());
     let begin = flight.scenes[steps.start].at;
     let way: Vec<_> = [begin].into_iter().chain(moved.flat_map(|it| it.way.clone())).collect();
-    let way = line(&way, false, THIN, opaque(style::PATH.colour));
+    let way = line(&way, false, THIN, of(PATH));
     let lines = if steps.is_empty() { Vec::new() } else { vec![way] };
     SceneEntity { lines, ..entity(&format!("{part}path"), second) }
 }
@@ -128,8 +125,7 @@ fn read(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scene
 
 /// The map of a front after some steps, and from the one before on: each piece with the borders of its 90 % band.
 fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
-    let colour = style::FRONT.colour;
-    let strokes = [(THICK, opaque(colour)), (THIN, opaque(SHADE)), (THIN, opaque(SHADE))];
+    let strokes = [(THICK, of(FRONT)), (THIN, opaque(SHADE)), (THIN, opaque(SHADE))];
     let scenes = if steps.is_empty() { &[] } else { &flight.scenes[steps.start..=steps.end] };
     let pieces = scenes.split(|it| it.front.is_none()).filter(|piece| !piece.is_empty());
     let lines = pieces.flat_map(|piece| {
@@ -146,28 +142,24 @@ fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scen
 /// What is known: the ground and the estimate.
 fn known(scene: &Scene, second: u32) -> [SceneEntity; 2] {
     let estimate = scene.estimate.iter();
-    let estimate = estimate
-        .map(|it| line(&it.ends, false, THICK, opaque(style::of_line(Kind::Estimate).colour)));
+    let estimate = estimate.map(|it| line(&it.ends, false, THICK, of(ESTIMATE)));
     let ground = entity("ground", second);
     let ground = match &scene.ground {
-        GroundRecord::Certain(regions) => {
+        Ground::Labelled(regions) => {
             let labels = [Label::Positive, Label::Negative];
             let certain = labels.into_iter().zip(regions).map(|(label, ring)| {
-                fan(ring, Color { a: 0.25, ..opaque(style::of_label(label)) })
+                fan(&ring.0, Color { a: 0.25, ..opaque(style::of_label(label)) })
             });
             SceneEntity { triangles: certain.collect(), ..ground }
         }
-        GroundRecord::Bands(bands) => {
-            let borders = bands.iter().flat_map(|BandRecord { from, rings }| {
+        Ground::Credible(bands) => {
+            let borders = bands.iter().flat_map(|Band { from, rings }| {
                 let color = Color { a: 0.2 + 0.8 * from, ..opaque(SHADE) };
-                rings.iter().map(move |ring| {
-                    let places: Vec<_> = ring.chunks_exact(2).map(|at| [at[0], at[1]]).collect();
-                    line(&places, true, THIN, color)
-                })
+                rings.iter().map(move |ring| line(ring, true, THIN, color))
             });
             SceneEntity { lines: borders.collect(), ..ground }
         }
-        GroundRecord::Plain => ground,
+        Ground::Plain => ground,
     };
     [ground, SceneEntity { lines: estimate.collect(), ..entity("estimate", second) }]
 }
@@ -186,12 +178,13 @@ fn entity(id: &str, second: u32) -> SceneEntity {
 fn samples(
     id: &str,
     second: u32,
-    samples: impl Iterator<Item = (Place, i8)>,
+    samples: impl Iterator<Item = (Point2<f64>, i8)>,
     size: f64,
 ) -> SceneEntity {
     let mut entity = entity(id, second);
     for (at, label) in samples {
-        let (pose, size) = (Some(pose(at, 0.0)), Some(Vector3 { x: size, y: size, z: size }));
+        let (pose, size) =
+            (Some(pose(at.into(), 0.0)), Some(Vector3 { x: size, y: size, z: size }));
         let color = |label| Some(opaque(style::of_label(label)));
         match label {
             1.. => {
@@ -213,6 +206,11 @@ const SHADE: &str = "#8653a6";
 /// Viewers have a dark ground or a light one, so the true line is not black, as it is in figures.
 const TRUTH: &str = "#cc79a7";
 
+/// The colour of a stroke.
+fn of(stroke: Stroke) -> Color {
+    opaque(stroke.colour)
+}
+
 /// A colour as figures name it, `#rrggbb`.
 fn opaque(name: &str) -> Color {
     let part = |k: usize| {
@@ -222,25 +220,25 @@ fn opaque(name: &str) -> Color {
     Color { r: part(1), g: part(3), b: part(5), a: 1.0 }
 }
 
-fn line(places: &[Place], is_loop: bool, thickness: f64, color: Color) -> LinePrimitive {
+fn line(places: &[Point2<f64>], is_loop: bool, thickness: f64, color: Color) -> LinePrimitive {
     LinePrimitive {
         r#type: i32::from(is_loop),
         pose: Some(pose([0.0, 0.0], 0.0)),
         thickness,
         scale_invariant: true,
-        points: places.iter().copied().map(point).collect(),
+        points: places.iter().copied().map(|at| point(at.into())).collect(),
         color: Some(color),
         ..LinePrimitive::default()
     }
 }
 
 /// A convex polygon as triangles about its first corner.
-fn fan(ring: &[Place], color: Color) -> TriangleListPrimitive {
+fn fan(ring: &[Point2<f64>], color: Color) -> TriangleListPrimitive {
     let corners = ring.split_first().map_or(&[][..], |(_, rest)| rest).windows(2);
     let points = corners.flat_map(|pair| [ring[0], pair[0], pair[1]]);
     TriangleListPrimitive {
         pose: Some(pose([0.0, 0.0], 0.0)),
-        points: points.map(point).collect(),
+        points: points.map(|at| point(at.into())).collect(),
         color: Some(color),
         ..TriangleListPrimitive::default()
     }

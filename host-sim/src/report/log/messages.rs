@@ -2,7 +2,8 @@
 
 use foxglove::messages::{Point3, Pose, Quaternion, Timestamp, Vector3};
 
-use crate::report::page::scene::Place;
+/// A place in the plane, metres.
+pub(super) type Place = [f64; 2];
 
 /// The schema of our own message: name and descriptors.
 pub(super) const STEP: (&str, &[u8]) =

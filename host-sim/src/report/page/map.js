@@ -16,7 +16,7 @@ function shown(flight) {
   const area = around(flight.area);
   if (!flight.follows) return { bounds: area, isPart: false };
   const track = flight.scenes.flatMap(({ at, motion, front }) => [at, ...(motion?.way ?? []), ...(front?.ends ?? [])]);
-  const part = around([...track, ...flight.given.map((it) => it.at)]);
+  const part = around([...track, ...flight.given.map(([at]) => at)]);
   const size = longest(part);
   if (size === 0 || size > 0.5 * longest(area)) return { bounds: area, isPart: false };
   const grown = (from, to) => {
@@ -75,7 +75,7 @@ function drawMap(svg, flight, step, width, from) {
     add(svg, 'path', { class: 'leg', d: through(legs.map(at)) });
     if (scene.motion.target) cross(svg, at(scene.motion.target), 'target');
   }
-  for (const [number, { at: place, label }] of flight.given.entries()) {
+  for (const [number, [place, label]] of flight.given.entries()) {
     const [x, y] = at(place);
     symbol(svg, [x, y], label, 6.5);
     const isRight = x > width - 40;
@@ -88,10 +88,15 @@ function drawMap(svg, flight, step, width, from) {
   if (isPart) drawInset(sheet, flight, view);
 }
 
+/** Whether a boundary is no longer there. */
+function isPast(stroke) {
+  return stroke.class === 'past-truth';
+}
+
 function drawTruth(svg, flight, at) {
   if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
-  for (const { ways, is_past } of flight.boundary ?? []) {
-    for (const way of ways) add(svg, 'path', { class: is_past ? 'truth past' : 'truth', d: through(way.map(at)) });
+  for (const { ways, stroke } of flight.boundary ?? []) {
+    for (const way of ways) add(svg, 'path', { class: isPast(stroke) ? 'truth past' : 'truth', d: through(way.map(at)) });
   }
 }
 
@@ -165,11 +170,6 @@ function drawFront(svg, scenes, at) {
   }
 }
 
-/** Places of `x, z, x, z` and so on. */
-function pairs(numbers) {
-  return Array.from({ length: numbers.length / 2 }, (_, k) => numbers.slice(2 * k, 2 * k + 2));
-}
-
 function drawGround(svg, ground, at) {
   if (ground.certain) {
     for (const [k, sign] of ['+1', '\u22121'].entries()) {
@@ -185,7 +185,7 @@ function drawGround(svg, ground, at) {
   }
   // Each band lies within the one before it, so shades add up.
   for (const { rings } of ground.bands ?? []) {
-    add(svg, 'path', { class: 'band', d: rings.map((ring) => through(pairs(ring).map(at), true)).join('') });
+    add(svg, 'path', { class: 'band', d: rings.map((ring) => through(ring.map(at), true)).join('') });
   }
 }
 

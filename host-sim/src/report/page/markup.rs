@@ -2,8 +2,10 @@
 
 use std::fmt::Write as _;
 
+use nalgebra::Point2;
+
 use crate::report::page::contents::{Chapter, Page};
-use crate::report::page::scene::{Flight, Moved, Place, Scene};
+use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{arcs, range, signed, small};
 use crate::report::text::fixed;
 
@@ -136,7 +138,7 @@ fn steps(flight: &Flight) -> String {
 /// What a step has beside its number. Of a front it is where the front is known best, and not a line.
 fn cells(scene: &Scene, follows: bool) -> [String; 11] {
     let none = || "\u{2013}".to_owned();
-    let place = |[x, z]: Place| format!("({x:.3}, {z:.3})").replace('-', "\u{2212}");
+    let place = |at: Point2<f64>| format!("({:.3}, {:.3})", at.x, at.y).replace('-', "\u{2212}");
     let motion = scene.motion.as_ref();
     let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
     let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };

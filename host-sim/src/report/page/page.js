@@ -134,9 +134,9 @@ function legend(figure, flight) {
     });
   }
   if (flight.truth) item('the true line', stroke('truth'));
-  for (const { name, is_past } of flight.boundary ?? []) item(`the ${name}`, stroke(is_past ? 'truth past' : 'truth'));
+  for (const { name, stroke: its } of flight.boundary ?? []) item(`the ${name}`, stroke(isPast(its) ? 'truth past' : 'truth'));
   if (flight.scenes.some((it) => it.front)) {
-    const moves = (flight.boundary ?? []).some((it) => it.is_past);
+    const moves = (flight.boundary ?? []).some((it) => isPast(it.stroke));
     item(`the front as it ${moves ? 'was when it was' : 'is'} mapped`, stroke('estimate'));
     item('it lies here with a probability of 90 %', box('front'));
   }

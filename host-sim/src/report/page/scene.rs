@@ -9,16 +9,16 @@ use serde::Serialize;
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, PoseRecord, StepResult};
-use crate::report::bands::Band;
 use crate::report::examples::bits;
 use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
-use crate::report::picture::{Outline, Picture, Stop, Truth};
-use crate::report::ribbon::Rung;
+use crate::report::picture::{Drawn, Picture, Stop};
+use crate::report::pieces::ends;
 use crate::report::text;
 use crate::world::World;
 use crate::world::extent::{around, span};
 use crate::world::polygon::Polygon;
+use crate::world::way::Way;
 
 /// Places are rounded to the area's size divided by this: a twentieth of a pixel.
 const GRAIN: f64 = 20_000.0;
@@ -35,16 +35,16 @@ pub(crate) struct Flight {
     /// Whether a front is followed, and not a straight line sought.
     pub(crate) follows: bool,
     /// The border of the area.
-    pub(crate) area: Ring,
+    pub(crate) area: Polygon,
     /// What is kept out of.
-    pub(crate) keep_outs: Vec<Ring>,
+    pub(crate) keep_outs: Vec<Polygon>,
     /// The samples that were given.
-    pub(crate) given: Vec<Mark>,
+    pub(crate) given: Vec<(Point2<f64>, i8)>,
     /// The true line, where known.
     pub(crate) truth: Option<SeenLine>,
     /// The true boundary, where it is known and no fixed line.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(crate) boundary: Vec<SeenBoundary>,
+    pub(crate) boundary: Vec<Drawn>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
     /// The picture of the end, for where no script runs.
@@ -52,24 +52,11 @@ pub(crate) struct Flight {
     pub(crate) picture: Picture,
 }
 
-/// The border of a polygon.
-pub(crate) type Ring = Vec<Place>;
-
-/// Metres.
-pub(crate) type Place = [f64; 2];
-
-/// A sample.
-#[derive(Debug, Serialize)]
-pub(crate) struct Mark {
-    pub(crate) at: Place,
-    pub(crate) label: i8,
-}
-
 /// A line as it is seen in the area.
 #[derive(Debug, Serialize)]
 pub(crate) struct SeenLine {
     /// Where it enters and leaves the area; empty of a line that passes it by.
-    pub(crate) ends: Vec<Place>,
+    pub(crate) ends: Way,
     /// Degrees.
     angle: f64,
     /// Metres; `None` of a vertical line.
@@ -80,28 +67,17 @@ pub(crate) struct SeenLine {
     pub(crate) misclassified: Option<f64>,
 }
 
-/// The true boundary as it is seen in the area.
-#[derive(Debug, Serialize)]
-pub(crate) struct SeenBoundary {
-    /// What it is, for the legend.
-    pub(crate) name: &'static str,
-    /// Whether it is no longer there.
-    is_past: bool,
-    /// Its parts.
-    pub(crate) ways: Vec<Vec<Place>>,
-}
-
 /// The state of knowledge after some step, and the motion that led there.
 #[derive(Debug, Serialize)]
 pub(crate) struct Scene {
     /// The motion; `None` at the start.
     pub(crate) motion: Option<Moved>,
     /// Where the robot is by what it reports.
-    pub(crate) at: Place,
+    pub(crate) at: Point2<f64>,
     /// Radians.
     heading: f64,
     /// What is known of the ground.
-    pub(crate) ground: GroundRecord,
+    pub(crate) ground: Ground,
     /// The recommended estimate.
     pub(crate) estimate: Option<SeenLine>,
     /// Where the front is known best, if one is followed and found.
@@ -127,8 +103,8 @@ pub(crate) struct Scene {
 #[derive(Debug, Serialize)]
 pub(crate) struct SeenFront {
     /// The place, and the ends of its 90 % interval.
-    pub(crate) at: Place,
-    pub(crate) ends: [Place; 2],
+    pub(crate) at: Point2<f64>,
+    pub(crate) ends: [Point2<f64>; 2],
     /// The half-width, metres.
     pub(crate) half_width: f64,
     /// The distance of the place from the true front, metres.
@@ -148,11 +124,11 @@ pub(crate) struct Moved {
     #[serde(skip)]
     pub(crate) motion: String,
     /// Places on the way, the last of them the end.
-    pub(crate) way: Vec<Place>,
+    pub(crate) way: Way,
     /// Where it should have ended, if it ended elsewhere.
-    target: Option<Place>,
+    target: Option<Point2<f64>>,
     /// Where the robot truly was, if it errs.
-    truly: Option<Place>,
+    truly: Option<Point2<f64>>,
     /// -1, 0 on the boundary, 1; `None` if nothing was read.
     pub(crate) label: Option<i8>,
     /// Whether that is known to be false.
@@ -161,26 +137,6 @@ pub(crate) struct Moved {
     pub(crate) chance: Option<f64>,
     /// Bits that it was expected to carry.
     pub(crate) expected: Option<f64>,
-}
-
-/// What is known of the ground.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub(crate) enum GroundRecord {
-    /// What is certain to be +1, and to be -1.
-    Certain([Ring; 2]),
-    /// Where the line may pass, the least likely first.
-    Bands(Vec<BandRecord>),
-    /// Nothing to show.
-    Plain,
-}
-
-/// Ground where the line passes with at least some probability.
-#[derive(Debug, Serialize)]
-pub(crate) struct BandRecord {
-    pub(crate) from: f64,
-    /// Polygons, each as `x, z, x, z` and so on: there are many.
-    pub(crate) rings: Vec<Vec<f64>>,
 }
 
 /// Rounds places to what can be seen.
@@ -196,40 +152,41 @@ impl Rounding {
         Self { unit: 10_f64.powf(((high - low).amax() / GRAIN).log10().floor()) }
     }
 
-    fn place(self, at: Point2<f64>) -> Place {
+    fn place(self, at: Point2<f64>) -> Point2<f64> {
         // A division, if the unit is a fraction, keeps decimals short.
-        let rounded = |m: f64| {
-            let per_metre = (1.0 / self.unit).round();
-            if per_metre > 1.0 { (m * per_metre).round() / per_metre } else { m.round() }
-        };
-        [rounded(at.x), rounded(at.y)]
+        let per_metre = (1.0 / self.unit).round();
+        at.map(|m| if per_metre > 1.0 { (m * per_metre).round() / per_metre } else { m.round() })
     }
 
-    fn ring(self, polygon: &Polygon) -> Ring {
-        self.corners(&polygon.0)
+    fn way(self, mut places: Way) -> Way {
+        places.iter_mut().for_each(|at| *at = self.place(*at));
+        places.dedup();
+        places
     }
 
-    fn boundary(self, &Outline { name, is_past, ref ways }: &Outline) -> SeenBoundary {
-        SeenBoundary { name, is_past, ways: ways.iter().map(|way| self.corners(way)).collect() }
+    fn ground(self, mut ground: Ground) -> Ground {
+        for ring in ground.rings() {
+            *ring = self.way(std::mem::take(ring));
+        }
+        if let Ground::Credible(bands) = &mut ground {
+            bands.iter_mut().for_each(|band| band.rings.retain(|ring| ring.len() > 2));
+        }
+        ground
+    }
+
+    fn drawn(self, it: Drawn) -> Drawn {
+        Drawn { ways: it.ways.into_iter().map(|way| self.way(way)).collect(), ..it }
     }
 
     fn front(self, step: &StepResult, world: &World) -> Option<SeenFront> {
         let vertex = step.front.as_ref()?;
-        let Rung { at, ends } = Rung::from(vertex);
-        let site = || Site::try_from(at).ok();
-        let off = || site().map(|site| world.distance(site).abs());
+        let off = || Some(world.distance(Site::try_from(vertex.at()).ok()?).abs());
         Some(SeenFront {
-            at: self.place(at),
-            ends: ends.map(|at| self.place(at)),
+            at: self.place(vertex.at()),
+            ends: ends(vertex).map(|at| self.place(at)),
             half_width: vertex.half_width,
             off: world.is_known().then(off).flatten(),
         })
-    }
-
-    fn corners(self, places: &[Point2<f64>]) -> Ring {
-        let mut corners: Ring = places.iter().map(|at| self.place(*at)).collect();
-        corners.dedup();
-        corners
     }
 }
 
@@ -237,7 +194,7 @@ impl Flight {
     /// The longer side of the area, metres.
     pub(crate) fn size(&self) -> f64 {
         let side = |axis: usize| {
-            let [from, to] = span(self.area.iter().map(|at| at[axis]));
+            let [from, to] = span(self.area.0.iter().map(|at| at[axis]));
             to - from
         };
         side(0).max(side(1))
@@ -252,9 +209,8 @@ impl Flight {
         let picture = Picture::of(planner, recording);
         let seen = |record: &LineRecord| seen(record, &border, rounding);
         let [(estimate, _), ..] = text::estimates(results);
-        let mark = |s: &Sample| Mark { at: rounding.place(s.site.into()), label: s.label.sign() };
-        let stops = picture.path.iter().flat_map(|(_, stops)| stops);
-        let taken = steps.iter().zip(&results.steps).zip(stops);
+        let given = |s: &Sample| (rounding.place(s.site.into()), s.label.sign());
+        let taken = steps.iter().zip(&results.steps).zip(&picture.stops);
         let taken = taken.map(|((step, result), stop)| Some(Taken { step, result, stop }));
         let stage = Stage { recording, rounding, estimate };
         let mut sums = Sums::default();
@@ -272,21 +228,19 @@ impl Flight {
         if let Some(last) = scenes.last_mut() {
             last.told.extend(words::ended(results));
         }
+        let polygon = |it: Polygon| Polygon(rounding.way(it.0));
+        let is_line = mission.world.line().is_some();
+        let boundary = if is_line { Vec::new() } else { picture.truth.clone() };
         Self {
             planner: planner.to_owned(),
             estimate,
             labels_err: mission.is_noisy(),
             follows: !mission.algorithm.seeks_line(),
-            area: rounding.ring(&border),
-            keep_outs: area.hulls().map(|hull| rounding.ring(&Polygon::from(hull))).collect(),
-            given: mission.oracle().iter().map(mark).collect(),
+            keep_outs: area.hulls().map(|hull| polygon(hull.into())).collect(),
+            given: mission.oracle().iter().map(given).collect(),
             truth: results.start.truth.as_ref().map(seen),
-            boundary: picture
-                .truth
-                .iter()
-                .flat_map(Truth::outlines)
-                .map(|it| rounding.boundary(it))
-                .collect(),
+            boundary: boundary.into_iter().map(|it| rounding.drawn(it)).collect(),
+            area: polygon(border),
             scenes,
             picture,
         }
@@ -338,7 +292,7 @@ impl Stage<'_> {
             motion: taken.map(|taken| self.moved(taken)),
             at: rounding.place(Point2::new(x, z)),
             heading,
-            ground: GroundRecord::of(&Ground::of(belief, area), rounding),
+            ground: rounding.ground(Ground::of(belief, area)),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
             front: step
                 .filter(|step| is_beside(&recording.results.steps, step.step))
@@ -377,7 +331,7 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
     let line = Line::from_coefficients(a, b, c);
     let ends = line.map(|line| border.across(&line)).unwrap_or_default();
     SeenLine {
-        ends: ends.into_iter().map(|at| rounding.place(at)).collect(),
+        ends: rounding.way(ends),
         angle,
         intercept,
         off_deg: error.map(|LineError { degrees, .. }| degrees),
@@ -385,24 +339,6 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
     }
 }
 
-impl GroundRecord {
-    fn of(ground: &Ground, rounding: Rounding) -> Self {
-        match ground {
-            Ground::Certain(regions) | Ground::Agreed(regions) => {
-                Self::Certain(regions.each_ref().map(|it| rounding.ring(it)))
-            }
-            Ground::Credible(bands) => {
-                let record = |Band { from, rings }: &Band| {
-                    let rings = rings.iter().map(|ring| rounding.corners(ring));
-                    let seen = rings.filter(|ring| ring.len() >= 3).map(|ring| ring.concat());
-                    BandRecord { from: *from, rings: seen.collect() }
-                };
-                Self::Bands(bands.iter().map(record).collect())
-            }
-            Ground::Plain => Self::Plain,
-        }
-    }
-}
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
 const fn is_false(it: &bool) -> bool {
     !*it
