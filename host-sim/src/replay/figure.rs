@@ -53,7 +53,7 @@ impl Replay {
         };
         let (name, line) = self.named()[0];
         let estimate =
-            |line| Drawn::across(area.into(), line, ESTIMATE, format!("estimate: {name}"));
+            |line| Drawn::across(&area.into(), line, ESTIMATE, format!("estimate: {name}"));
         let picture = Picture {
             ground: Ground::Labelled(self.answer.ground(area)),
             says: if doubt.is_some() { AGREED } else { CERTAIN },

@@ -128,16 +128,27 @@ impl Frame {
         matches!(self, Self::Geographic { .. } | Self::Projected { .. })
     }
 
-    /// Latitude and longitude of a position.
+    /// Longitude and latitude of a position.
     ///
     /// # Errors
     /// Metres have none by themselves.
     pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
-        match self {
-            Self::Geographic { .. } => Ok(self.recorded(at)),
-            Self::Projected { crs, .. } => Ok(crs.degrees(self.recorded(at))?.map(to_grain)),
+        let [lat, lon] = match self {
+            Self::Geographic { .. } => self.recorded(at),
+            Self::Projected { crs, .. } => crs.degrees(self.recorded(at))?.map(to_grain),
             Self::Plain | Self::About(_) => bail!("found metres, expected latitude and longitude"),
-        }
+        };
+        Ok([lon, lat])
+    }
+
+    /// Whether positions lie on both sides of the 180th meridian.
+    ///
+    /// # Errors
+    /// Metres lie on none by themselves.
+    pub(crate) fn crosses_meridian(&self, all: impl Iterator<Item = Point2<f64>>) -> Result<bool> {
+        let lons = all.map(|at| Ok(self.degrees(at)?[0])).collect::<Result<Vec<_>>>()?;
+        let [least, most] = span(lons);
+        Ok(most - least > 180.0)
     }
 
     /// A line in the file's metres; `None` where the file has none.

@@ -69,15 +69,6 @@ impl FrontMap {
     }
 }
 
-/// Longitude and latitude.
-///
-/// # Errors
-/// Metres have none by themselves.
-pub(crate) fn degrees(frame: &Frame, at: Point2<f64>) -> Result<[f64; 2]> {
-    let [lat, lon] = frame.degrees(at)?;
-    Ok([lon, lat])
-}
-
 /// A front by its pieces: bands and lines as they are drawn, and vertices. `number` adds what numbers a vertex, by its index and its number.
 ///
 /// # Errors
@@ -92,7 +83,7 @@ pub(crate) fn features(
     for (piece, vertices) in (1..).zip(&drawn.0) {
         let on_globe = |ring: &Vec<[f64; 2]>| {
             let closed = ring.iter().chain(ring.first());
-            closed.map(|at| degrees(frame, (*at).into())).collect::<Result<Vec<_>>>()
+            closed.map(|at| frame.degrees((*at).into())).collect::<Result<Vec<_>>>()
         };
         let band = band(vertices).into_iter();
         let band = band.map(|polygon| polygon.iter().map(on_globe).collect::<Result<Vec<_>>>());
@@ -105,7 +96,7 @@ pub(crate) fn features(
         }
     }
     for (piece, way) in (1..).zip(drawn.ways()) {
-        let way = way.into_iter().map(|at| degrees(frame, at)).collect::<Result<Vec<_>>>()?;
+        let way = way.into_iter().map(|at| frame.degrees(at)).collect::<Result<Vec<_>>>()?;
         if way.len() > 1 {
             features.push(feature(
                 GeometryValue::new_line_string(way),
@@ -123,7 +114,7 @@ pub(crate) fn features(
             "turn_deviation": it.turn_deviation,
         });
         number(index, of, &mut told);
-        features.push(feature(GeometryValue::new_point(degrees(frame, it.at())?), told));
+        features.push(feature(GeometryValue::new_point(frame.degrees(it.at())?), told));
     }
     Ok(features)
 }

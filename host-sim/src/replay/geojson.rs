@@ -2,7 +2,6 @@
 
 use anyhow::{Context as _, Result, bail};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
-use nalgebra::Point2;
 use planner_core::{Area, Sample};
 use serde_json::{Value, json};
 
@@ -23,8 +22,11 @@ impl Replay {
         let mut features = Vec::new();
         for (polygon, label) in self.answer.ground(area).into_iter().zip([1, -1]) {
             if polygon.0.len() >= 3 {
-                let ring =
-                    polygon.0.iter().chain(polygon.0.first()).map(|at| self.file.degrees(*at));
+                let ring = polygon
+                    .0
+                    .iter()
+                    .chain(polygon.0.first())
+                    .map(|at| self.file.frame.degrees(*at));
                 let ring = ring.collect::<Result<Vec<_>>>()?;
                 let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
                 features.push(feature(
@@ -40,7 +42,7 @@ impl Replay {
             ("most_likely", most_likely),
         ] {
             if let Some([from, to]) = line.and_then(|line| self.ends(&line)) {
-                let ends = [self.file.degrees(from)?, self.file.degrees(to)?];
+                let ends = [self.file.frame.degrees(from)?, self.file.frame.degrees(to)?];
                 features
                     .push(feature(GeometryValue::new_line_string(ends), json!({ "kind": kind })));
             }
@@ -69,7 +71,7 @@ impl SampleFile {
         }
         let area = area_around(&self.samples)
             .with_context(|| format!("{name}: no area around the samples"))?;
-        if self.crosses_meridian(&Polygon::from(area))? {
+        if self.frame.crosses_meridian(Polygon::from(area).0.into_iter())? {
             bail!(
                 "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
             );
@@ -91,19 +93,7 @@ impl SampleFile {
         if let Some(disagrees) = disagrees {
             told["disagrees"] = disagrees.into();
         }
-        Ok(feature(GeometryValue::new_point(self.degrees(sample.site.into())?), told))
-    }
-
-    /// Longitude and latitude.
-    pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
-        let [lat, lon] = self.frame.degrees(at)?;
-        Ok([lon, lat])
-    }
-
-    fn crosses_meridian(&self, ground: &Polygon) -> Result<bool> {
-        let lons = ground.0.iter().map(|corner| Ok(self.degrees(*corner)?[0]));
-        let lons = lons.collect::<Result<Vec<_>>>()?;
-        Ok(lons.iter().any(|a| lons.iter().any(|b| (a - b).abs() > 180.0)))
+        Ok(feature(GeometryValue::new_point(self.frame.degrees(sample.site.into())?), told))
     }
 }
 

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, bail};
 use serde_json::Value;
 
-use crate::replay::front_drawing::{degrees, features};
+use crate::replay::front_drawing::features;
 use crate::replay::geojson::collection;
 use crate::replay::joined_map::JoinedMap;
 use crate::report::picture::Picture;
@@ -42,10 +42,7 @@ impl JoinedMap {
                 self.files[0].name
             );
         }
-        let lons = self.places().map(|it| Ok(degrees(&self.frame, it.vertex.at())?[0]));
-        let lons = lons.collect::<Result<Vec<_>>>()?;
-        let [least, most] = [f64::min, f64::max].map(|it| lons.iter().copied().fold(lons[0], it));
-        if most - least > 180.0 {
+        if self.frame.crosses_meridian(self.places().map(|it| it.vertex.at()))? {
             bail!("--geojson: the maps lie on both sides of the 180th meridian, expected one side");
         }
         let robots: Vec<_> = self.places().map(|it| it.robot).collect();

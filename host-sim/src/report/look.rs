@@ -6,7 +6,7 @@ use svg::Node;
 use svg::node::element::{Group, Path};
 
 use crate::report::shapes::{Anchor, NUMBER, Spot, circle, outline, rectangle, square, text};
-use crate::report::style::{self, Fill, INK, Stroke};
+use crate::report::style::{self, Fill, INK, SHADES, Stroke};
 
 /// How something looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +187,7 @@ impl Look {
             Self::Mark(mark) => mark.class,
             Self::Line(stroke) => stroke.class,
             Self::Marker(k) => style::CURVES[k].class,
-            Self::Ground(fill) => fill.class(),
+            Self::Ground(fill) => fill.class,
             Self::Shades(_) => "shading",
         }
     }
@@ -229,8 +229,7 @@ impl Look {
                 group.add(edge.set("stroke-width", 0.6))
             }
             Self::Shades(count) => {
-                let shade =
-                    |k| Self::Ground(Fill::Shade(k)).at(at + Vector2::new(30.0 * k as f64, 0.0));
+                let shade = |k| Self::Ground(SHADES[k]).at(at + Vector2::new(30.0 * k as f64, 0.0));
                 (0..count).map(shade).fold(group, Group::add)
             }
         }

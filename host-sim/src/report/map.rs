@@ -5,8 +5,8 @@ use std::collections::HashSet;
 use std::iter;
 
 use nalgebra::{Point2, Vector2};
+use planner_core::Workspace as _;
 use planner_core::link::message::MissionArea;
-use planner_core::{Label, Workspace as _};
 
 use crate::report::axes::{Axes, Axis, Scale};
 use crate::report::bands::Band;
@@ -17,7 +17,10 @@ use crate::report::picture::{Drawn, Picture};
 use crate::report::placing::{Frame, Placing, foot};
 use crate::report::shapes::{Anchor, Spot, width};
 use crate::report::sheet::Sheet;
-use crate::report::style::{BORDER, FRONT, Fill, HEADING, INK, INSET, PATH, dashed};
+use crate::report::style::{
+    BLANK, BORDER, DOUBTFUL, FRONT, FRONT_BAND, Fill, GROUND_NEGATIVE, GROUND_POSITIVE, HEADING,
+    INK, INSET, KEEP_OUT, OUTSIDE, PATH, SHADES, dashed,
+};
 use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 
@@ -125,8 +128,8 @@ impl<'a> Map<'a> {
             let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
             let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
             let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
-            map.sheet.ground(Fill::Outside, &[all, map.spots(&border.0)]);
-            map.sheet.name(Look::Ground(Fill::Outside), "outside the area");
+            map.sheet.ground(OUTSIDE, &[all, map.spots(&border.0)]);
+            map.sheet.name(Look::Ground(OUTSIDE), "outside the area");
         }
         map
     }
@@ -140,34 +143,33 @@ impl<'a> Map<'a> {
         match &self.picture.ground {
             Ground::Labelled(regions) => {
                 let [labelled, white] = self.picture.says;
-                for (label, region) in [Label::Positive, Label::Negative].into_iter().zip(regions) {
-                    let meaning = format!("{labelled} {:+}", label.sign());
-                    self.fill(Fill::Of(label), &region.0, &meaning);
-                }
+                let [positive, negative] = regions;
+                self.fill(GROUND_POSITIVE, &positive.0, &format!("{labelled} +1"));
+                self.fill(GROUND_NEGATIVE, &negative.0, &format!("{labelled} -1"));
                 if !white.is_empty() {
-                    self.sheet.name(Look::Ground(Fill::Blank), white);
+                    self.sheet.name(Look::Ground(BLANK), white);
                 }
             }
             Ground::Credible(bands) => self.shade(bands),
             Ground::Plain => {}
         }
-        self.fill(Fill::Doubtful, &self.picture.doubtful.0, "labels may be wrong here");
+        self.fill(DOUBTFUL, &self.picture.doubtful.0, "labels may be wrong here");
         self.front_ground();
         for hull in self.picture.area.hulls() {
             let Polygon(outline) = Polygon::from(hull);
             if outline.len() == 2 {
                 let way = self.spots(&outline);
                 self.sheet.ways(dashed("keep-out", "#6e6e6e", 4.0, ""), [&way[..]]);
-                self.sheet.name(Look::Ground(Fill::KeepOut), "kept out of");
+                self.sheet.name(Look::Ground(KEEP_OUT), "kept out of");
             }
-            self.fill(Fill::KeepOut, &outline, "kept out of");
+            self.fill(KEEP_OUT, &outline, "kept out of");
         }
     }
 
     fn shade(&mut self, bands: &[Band]) {
         for (k, Band { rings, .. }) in bands.iter().enumerate() {
             let rings: Vec<_> = rings.iter().map(|ring| self.spots(ring)).collect();
-            self.sheet.ground(Fill::Shade(k), &rings);
+            self.sheet.ground(SHADES[k], &rings);
         }
         let least = bands.iter().map(|band| format!("{:.0}", 100.0 * band.from));
         let least: Vec<_> = least.collect();
@@ -199,11 +201,11 @@ impl<'a> Map<'a> {
         for quad in rings {
             let ring = self.spots(&quad);
             is_narrow &= (ring[0] - ring[3]).norm() < FRONT.width;
-            self.sheet.ground(Fill::Front, &[ring]);
+            self.sheet.ground(FRONT_BAND, &[ring]);
         }
         let seen = if is_narrow { "; here it is narrower than the line" } else { "" };
         let meaning = format!("the front lies here with a probability of 90 %{seen}");
-        self.sheet.name(Look::Ground(Fill::Front), meaning);
+        self.sheet.name(Look::Ground(FRONT_BAND), meaning);
         self.sheet.name(Look::Line(FRONT), self.picture.mapped().name);
     }
 
@@ -334,7 +336,7 @@ impl<'a> Map<'a> {
         let all = ring([min, max]);
         let ([left, right], [bottom, top]) = (self.axes.x.figures, self.axes.z.figures);
         let part = ring([Point2::new(left, bottom), Point2::new(right, top)]);
-        self.sheet.ground(Fill::Blank, std::slice::from_ref(&all));
+        self.sheet.ground(BLANK, std::slice::from_ref(&all));
         self.sheet.ways(INSET, [&all[..], &part[..]]);
         let of = max - min;
         let meaning =

@@ -53,10 +53,11 @@ pub(crate) fn draw(sheet: &mut Sheet, placing: &mut Placing, stops: &[Spot]) {
         sheet.number(&name, foot(&frame) - Vector2::new(0.0, 0.5));
     }
     if count > 0 {
-        let mut meaning = NUMBER_OF_STEP.meaning.to_owned();
-        if left_out > 0 {
-            meaning += &format!("; left out where too tight: {left_out}");
-        }
+        let meaning = NUMBER_OF_STEP.meaning;
+        let meaning = match left_out {
+            0 => meaning.to_owned(),
+            _ => format!("{meaning}; left out where too tight: {left_out}"),
+        };
         sheet.name(Look::Mark(NUMBER_OF_STEP), meaning);
     }
 }

@@ -56,14 +56,13 @@ fn fly(text: &str, change: fn(Mission) -> Mission) -> Result<Recording> {
 /// A mission with the ground of either label, as the true line divides it.
 fn divided(title: &str, note: &str, recording: &Recording) -> Result<(Picture, Line)> {
     let truth = *recording.mission.world.line().context("a mission without a line")?;
-    let mut picture = Picture::of(title, recording);
+    let mut picture = Picture::of(title, recording).noting(note);
     let side = |side| Polygon::from(picture.area).clip(&truth, side);
     picture.ground = Ground::Labelled([side(1.0), side(-1.0)]);
     picture.says = ["ground whose label is", ""];
-    picture.note = note.to_owned();
     picture.lines.clear();
     let sought = "true line, which the robot is to find";
-    picture.truth.iter_mut().for_each(|it| it.name = sought.to_owned());
+    picture.truth = vec![Drawn::across(&picture.area, truth, TRUTH, sought)];
     Ok((picture, truth))
 }
 
@@ -125,9 +124,9 @@ fn bounded(title: &str, note: &str, recording: &Recording, four: &[Sample]) -> R
         let way = to - from;
         let line = Line::through(*from, Vector2::new(-way.y, way.x)).context("two points")?;
         let meaning = "l13 to l24, bounds of the line: through the points named";
-        lines.push(Drawn::across(area, line, BOUND, meaning).beside(name));
+        lines.push(Drawn::across(&area, line, BOUND, meaning).beside(name));
     }
-    lines.push(Drawn::across(area, *truth, TRUTH, "true line"));
+    lines.push(Drawn::across(&area, *truth, TRUTH, "true line"));
     let one = |at: &Point2<f64>, label, meaning| Dot::new(*at, look::given(label).meaning(meaning));
     let negative = |at| one(at, Label::Negative, "one of the four points, label -1");
     let positive = |at| one(at, Label::Positive, "one of the four points, label +1");
@@ -162,10 +161,10 @@ fn new_points() -> Result<String> {
 /// Figure 5, "Possible classifiers with noisy data set".
 fn candidates() -> Result<String> {
     let recording = walk()?;
-    let mut picture =
+    let picture =
         Picture::of_candidates(&title(5, "which line?"), &recording).context("hypotheses")?;
-    picture.note =
-        "The labels of Figure 2: several lines violate about as few, and one is true".to_owned();
+    let note = "The labels of Figure 2: several lines violate about as few, and one is true";
+    let mut picture = picture.noting(note);
     // The paper's l3 is the one that its support vector machine finds.
     for (line, name) in picture.lines.iter_mut().zip(["l3", "l1", "l2"]) {
         line.name = format!("{name}: {}", line.name);
@@ -201,7 +200,7 @@ fn polar() -> Result<String> {
         picture.words.extend(names.map(|(name, of, at)| (format!("{name}{k}{of}"), at)));
         picture.lines.push(Drawn::new("their angles θ1 and θ2", ANGLE, vec![arc]));
     }
-    picture.lines.push(Drawn::across(picture.area, truth, TRUTH, "true line"));
+    picture.lines.push(Drawn::across(&picture.area, truth, TRUTH, "true line"));
     picture.samples.drain(..picture.given);
     Ok(Picture { truth: Vec::new(), start: None, stops: Vec::new(), given: 0, ..picture }.svg())
 }
@@ -209,20 +208,16 @@ fn polar() -> Result<String> {
 /// Figure 7, "Path of the Agent with unicycle model and noiseless observations".
 fn noiseless() -> Result<String> {
     let recording = fly(PAPER_NOISELESS, Mission::as_printed)?;
-    let mut picture =
-        Picture::of(&title(7, "true labels"), &recording).with_printed_estimate(&recording);
-    picture.note =
-        "The path of the unicycle with noiseless observations: Algorithm 1 as printed, 10 steps"
-            .to_owned();
-    Ok(picture.svg())
+    let picture = Picture::of(&title(7, "true labels"), &recording);
+    let note =
+        "The path of the unicycle with noiseless observations: Algorithm 1 as printed, 10 steps";
+    Ok(picture.with_printed_estimate(&recording).noting(note).svg())
 }
 
 /// Figure 8, "Path of the Agent with unicycle model and noisy observations".
 fn noisy() -> Result<String> {
     let recording = fly(PAPER_NOISY, Mission::as_printed)?;
-    let mut picture = Picture::of(&title(8, "labels true 7 times in 10"), &recording);
-    picture.note =
-        "The path of the unicycle with noisy observations: Algorithm 2 as printed, 10 steps"
-            .to_owned();
-    Ok(picture.svg())
+    let picture = Picture::of(&title(8, "labels true 7 times in 10"), &recording);
+    let note = "The path of the unicycle with noisy observations: Algorithm 2 as printed, 10 steps";
+    Ok(picture.noting(note).svg())
 }

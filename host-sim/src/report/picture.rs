@@ -116,12 +116,12 @@ impl Drawn {
 
     /// A straight line across an area.
     pub(crate) fn across(
-        area: MissionArea,
+        area: &MissionArea,
         line: impl Into<Line>,
         stroke: Stroke,
         name: impl Into<String>,
     ) -> Self {
-        let chord = Polygon::from(area).chord(&line.into());
+        let chord = Polygon::from(*area).chord(&line.into());
         Self::new(name, stroke, chord.into_iter().map(Vec::from).collect())
     }
 
@@ -133,7 +133,7 @@ impl Drawn {
 
 /// The boundary of a mission's world, at the start and after so many motions if it moves.
 fn truth(mission: &Mission, motions: usize) -> Vec<Drawn> {
-    let (world, area) = (&mission.world, mission.config.area);
+    let (world, area) = (&mission.world, &mission.config.area);
     let there = if mission.algorithm.seeks_line() { TRUTH } else { TRUE_FRONT };
     if let Some(line) = world.line() {
         return vec![Drawn::across(area, *line, there, "true line")];
@@ -143,7 +143,7 @@ fn truth(mission: &Mission, motions: usize) -> Vec<Drawn> {
     }
     let what = if world.is_line() && world.moves() { "true line" } else { "true boundary" };
     let at = |motions, when, stroke| {
-        let ways = world.after(motions).ways(&area.into());
+        let ways = world.after(motions).ways(&Polygon::from(*area));
         Drawn::new(format!("{what}{when}"), stroke, ways)
     };
     if world.moves() {
@@ -175,10 +175,16 @@ impl Picture {
         }
     }
 
+    /// The same with another note.
+    #[must_use]
+    pub(crate) fn noting(self, note: &str) -> Self {
+        Self { note: note.to_owned(), ..self }
+    }
+
     /// A mission: what is certain, the path, the labels, the lines.
     pub fn of(title: &str, recording: &Recording) -> Self {
         let Recording { mission, results, belief, .. } = recording;
-        let area = mission.config.area;
+        let area = &mission.config.area;
         let mut lines = Vec::new();
         if let Some(centre) = belief.estimates().centre {
             let estimate = |name| Drawn::across(area, centre, ESTIMATE, name);
@@ -255,7 +261,7 @@ impl Picture {
         let oracle = oracle.iter().map(|s| dot(s, 0, look::given));
         let samples = oracle.chain(read.iter().zip(numbers).map(of_step));
         Self {
-            ground: Ground::of(&**belief, area),
+            ground: Ground::of(&**belief, *area),
             says: if audit.is_some_and(|it| it.refuted.is_some()) { REFUTED } else { CERTAIN },
             samples: samples.chain(audited).collect(),
             given,
@@ -265,7 +271,7 @@ impl Picture {
             lines,
             follows,
             front: Pieces::of(results),
-            ..Self::bare(title, note(recording), area)
+            ..Self::bare(title, note(recording), *area)
         }
     }
 
@@ -290,7 +296,7 @@ impl Picture {
         let belief = &recording.belief;
         let bisector = belief.version_space().and_then(|_| belief.estimates().bisector);
         let name = "estimate as printed: bisector";
-        let printed = bisector.map(|line| Drawn::across(self.area, line, PRINTED, name));
+        let printed = bisector.map(|line| Drawn::across(&self.area, line, PRINTED, name));
         self.lines.splice(0..0, printed);
         self
     }
@@ -318,16 +324,11 @@ impl Picture {
             let is_first = stroke == CANDIDATES[0];
             let what = if is_first { "plain maximum margin" } else { "another candidate" };
             let name = format!("{what}; violations: {n}");
-            Drawn::across(all.area, line, stroke, name).beside(n.to_string())
+            Drawn::across(&all.area, line, stroke, name).beside(n.to_string())
         });
-        Some(Self {
-            note: "Lines that the fewest labels contradict, and beside each how many do".to_owned(),
-            ground: Ground::Plain,
-            start: None,
-            stops: Vec::new(),
-            lines: lines.collect(),
-            ..all
-        })
+        let lines = lines.collect();
+        let all = Self { ground: Ground::Plain, start: None, stops: Vec::new(), lines, ..all };
+        Some(all.noting("Lines that the fewest labels contradict, and beside each how many do"))
     }
 
     /// The mean front of its map.
@@ -412,7 +413,7 @@ fn arc(from: Point2<f64>, to: Point2<f64>, turn: f64) -> Vec<Point2<f64>> {
 }
 
 /// The lines at the two ends of a credible set's slopes: the paper's `l1` and `l2`.
-fn bounding(table: &Table, area: MissionArea) -> Vec<Drawn> {
+fn bounding(table: &Table, area: &MissionArea) -> Vec<Drawn> {
     let posterior = PosteriorView::new(table);
     let set = posterior.credible(LEVEL);
     let bounds = || posterior.members(&set).flat_map(|h| table.lines(h).bounds());

@@ -9,7 +9,7 @@ use svg::node::element::{Definitions, Group, Path, Pattern, Rectangle, SVG, Titl
 use crate::report::look::{Look, NUMBER_OF_STEP, marker};
 use crate::report::placing::Frame;
 use crate::report::shapes::{Anchor, NUMBER, Spot, continued, outline, rounded, text, width};
-use crate::report::style::{self, Fill, HATCHES, INK, Stroke};
+use crate::report::style::{self, Fill, HATCHED, INK, Stroke};
 
 /// A figure that is being drawn.
 pub(crate) struct Sheet {
@@ -148,15 +148,16 @@ impl Sheet {
 }
 
 fn hatches() -> Definitions {
-    HATCHES.iter().fold(Definitions::new(), |all, hatch| {
-        let tile = Rectangle::new().set("width", hatch.side).set("height", hatch.side);
-        let strokes = Path::new().set("d", hatch.strokes).set("stroke", hatch.ink);
+    HATCHED.iter().fold(Definitions::new(), |all, fill| {
+        let Some((ink, strokes, side)) = fill.strokes else { return all };
+        let tile = Rectangle::new().set("width", side).set("height", side);
+        let strokes = Path::new().set("d", strokes).set("stroke", ink);
         let pattern = Pattern::new()
-            .set("id", hatch.fill.class())
+            .set("id", fill.class)
             .set("patternUnits", "userSpaceOnUse")
-            .set("width", hatch.side)
-            .set("height", hatch.side)
-            .add(tile.set("fill", hatch.ground))
+            .set("width", side)
+            .set("height", side)
+            .add(tile.set("fill", fill.colour))
             .add(strokes.set("stroke-width", 1));
         all.add(pattern)
     })

@@ -16,12 +16,6 @@ const FAINT_NEGATIVE: &str = "#a3cbe6";
 /// The colour of text, axes and outlines.
 pub(crate) const INK: &str = "#1a1a1a";
 
-/// How many shades there are.
-pub(crate) const SHADES_COUNT: usize = LEAST.len();
-
-/// The shades of bands, the least likely first.
-const SHADES: [&str; SHADES_COUNT] = ["#f0e8f6", "#dccbe9", "#c3a5d7", "#a67cc2", "#8653a6"];
-
 /// How a line is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(crate) struct Stroke {
@@ -74,90 +68,62 @@ pub(crate) const fn dashed(
     Stroke { class, colour, width, dashes }
 }
 
-/// How ground is filled.
+/// How ground is filled: with a colour, and with strokes if it is hatched.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Fill {
-    /// It has a label.
-    Of(Label),
-    /// Nothing is said of it.
-    Blank,
-    /// Labels may be wrong there.
-    Doubtful,
-    /// Kept out of.
-    KeepOut,
-    /// Not of the area.
-    Outside,
-    /// Where a front lies.
-    Front,
-    /// A band, by its number.
-    Shade(usize),
+pub(crate) struct Fill {
+    pub(crate) class: &'static str,
+    pub(crate) colour: &'static str,
+    /// The colour of the strokes of a square tile, these, and its side in pixels.
+    pub(crate) strokes: Option<(&'static str, &'static str, u32)>,
+}
+
+/// Ground that has a label.
+pub(crate) const GROUND_POSITIVE: Fill =
+    hatched("ground-positive", "#fbe9dc", ("#efc3a3", "M-2,10L10,-2M-2,2L2,-2M6,10L10,6", 8));
+pub(crate) const GROUND_NEGATIVE: Fill =
+    hatched("ground-negative", "#ddebf5", ("#a9cbe3", "M-2,-2L10,10M-2,6L2,10M6,-2L10,2", 8));
+/// Labels may be wrong there.
+pub(crate) const DOUBTFUL: Fill =
+    hatched("ground-doubtful", "#f3efdc", ("#b9ad72", "M1,2L3,2M5,6L7,6", 8));
+pub(crate) const KEEP_OUT: Fill =
+    hatched("keep-out", "#c9c9c9", ("#6e6e6e", "M-1,7L7,-1M-1,-1L7,7", 6));
+/// All that are hatched.
+pub(crate) const HATCHED: [Fill; 4] = [GROUND_POSITIVE, GROUND_NEGATIVE, DOUBTFUL, KEEP_OUT];
+
+/// Nothing is said of it.
+pub(crate) const BLANK: Fill = plain("ground-blank", "#ffffff");
+/// Not of the area.
+pub(crate) const OUTSIDE: Fill = plain("outside", "#e4e4e4");
+/// Where a front lies.
+pub(crate) const FRONT_BAND: Fill = plain("front-band", SHADES[2].colour);
+
+/// The shades of bands, the least likely first.
+pub(crate) const SHADES: [Fill; LEAST.len()] = [
+    plain("shading", "#f0e8f6"),
+    plain("shading", "#dccbe9"),
+    plain("shading", "#c3a5d7"),
+    plain("shading", "#a67cc2"),
+    plain("shading", "#8653a6"),
+];
+
+const fn plain(class: &'static str, colour: &'static str) -> Fill {
+    Fill { class, colour, strokes: None }
+}
+
+const fn hatched(
+    class: &'static str,
+    colour: &'static str,
+    strokes: (&'static str, &'static str, u32),
+) -> Fill {
+    Fill { class, colour, strokes: Some(strokes) }
 }
 
 impl Fill {
-    pub(crate) const fn class(self) -> &'static str {
-        match self {
-            Self::Of(Label::Positive) => "ground-positive",
-            Self::Of(Label::Negative) => "ground-negative",
-            Self::Blank => "ground-blank",
-            Self::Doubtful => "ground-doubtful",
-            Self::KeepOut => "keep-out",
-            Self::Outside => "outside",
-            Self::Front => "front-band",
-            Self::Shade(_) => "shading",
-        }
-    }
-
-    /// The paint: a colour, or one of [`HATCHES`].
+    /// The paint: the colour, or the pattern of this name.
     pub(crate) fn paint(self) -> String {
-        match self {
-            Self::Blank => "#ffffff".to_owned(),
-            Self::Outside => "#e4e4e4".to_owned(),
-            Self::Front => SHADES[2].to_owned(),
-            Self::Shade(k) => SHADES[k.min(SHADES.len() - 1)].to_owned(),
-            hatched => format!("url(#{})", hatched.class()),
-        }
+        self.strokes.map_or_else(|| self.colour.to_owned(), |_| format!("url(#{})", self.class))
     }
 }
-
-/// Hatched fills: the ground and the strokes of a square tile, its side in pixels.
-pub(crate) struct Hatch {
-    pub(crate) fill: Fill,
-    pub(crate) ground: &'static str,
-    pub(crate) ink: &'static str,
-    pub(crate) strokes: &'static str,
-    pub(crate) side: u32,
-}
-
-pub(crate) const HATCHES: [Hatch; 4] = [
-    Hatch {
-        fill: Fill::Of(Label::Positive),
-        ground: "#fbe9dc",
-        ink: "#efc3a3",
-        strokes: "M-2,10L10,-2M-2,2L2,-2M6,10L10,6",
-        side: 8,
-    },
-    Hatch {
-        fill: Fill::Of(Label::Negative),
-        ground: "#ddebf5",
-        ink: "#a9cbe3",
-        strokes: "M-2,-2L10,10M-2,6L2,10M6,-2L10,2",
-        side: 8,
-    },
-    Hatch {
-        fill: Fill::Doubtful,
-        ground: "#f3efdc",
-        ink: "#b9ad72",
-        strokes: "M1,2L3,2M5,6L7,6",
-        side: 8,
-    },
-    Hatch {
-        fill: Fill::KeepOut,
-        ground: "#c9c9c9",
-        ink: "#6e6e6e",
-        strokes: "M-1,7L7,-1M-1,-1L7,7",
-        side: 6,
-    },
-];
 
 pub(crate) fn of_label(label: Label) -> &'static str {
     match label {

@@ -16,7 +16,7 @@ use crate::report::bands::Band;
 use crate::report::ground::Ground;
 use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
 use crate::report::page::scene::{Flight, Scene, SeenFront};
-use crate::report::style::{self, ESTIMATE, FRONT, PATH, Stroke};
+use crate::report::style::{self, ESTIMATE, FRONT, KEEP_OUT, PATH, SHADES, Stroke};
 
 /// Pixels.
 const THIN: f64 = 1.0;
@@ -30,24 +30,16 @@ const SAMPLE: f64 = 0.012;
 pub(super) fn begin(flight: &Flight) -> SceneUpdate {
     let size = SAMPLE * flight.size();
     let border = line(&flight.area.0, true, THIN, of(PATH));
-    let keep_outs = flight.keep_outs.iter().map(|ring| fan(&ring.0, opaque(KEEP_OUT)));
+    let keep_outs = flight.keep_outs.iter().map(|ring| fan(&ring.0, opaque(KEEP_OUT.colour)));
     let mut entities = vec![
         SceneEntity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
         samples("given", 0, flight.given.iter().copied(), 1.5 * size),
     ];
-    if let Some(truth) = &flight.truth {
-        let line = line(&truth.ends, false, THICK, opaque(TRUTH));
-        entities.push(SceneEntity { lines: vec![line], ..entity("true line", 0) });
-    }
     for it in &flight.boundary {
         let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
         entities.push(SceneEntity { lines: lines.collect(), ..entity(&it.name, 0) });
     }
-    let follows = flight.scenes.iter().any(|it| it.front.is_some());
-    for part in names(flight) {
-        let kinds = ["path", "samples", "front"].into_iter().take(2 + usize::from(follows));
-        entities.extend(kinds.map(|kind| entity(&format!("{part}{kind}"), 0)));
-    }
+    entities.extend(names(flight).flat_map(|part| grown(part, flight, &(0..0), 0)));
     if let Some(scene) = flight.scenes.first() {
         entities.extend(known(scene, 0));
     }
@@ -90,19 +82,21 @@ fn names(flight: &Flight) -> impl Iterator<Item = &'static str> {
 
 /// What each step adds.
 pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
-    let follows = flight.scenes.iter().any(|it| it.front.is_some());
     (1..).zip(flight.scenes.iter().skip(1)).map(move |(second, scene)| {
-        let mut entities = Vec::new();
-        for (part, steps) in parts(second as usize) {
-            entities
-                .extend([path(part, flight, &steps, second), read(part, flight, &steps, second)]);
-            if follows {
-                entities.push(front(part, flight, &steps, second));
-            }
-        }
-        entities.extend(known(scene, second));
+        let parts = parts(second as usize);
+        let grown = parts.flat_map(|(part, steps)| grown(part, flight, &steps, second));
+        let entities = grown.chain(known(scene, second)).collect();
         SceneUpdate { entities, ..SceneUpdate::default() }
     })
+}
+
+/// What grows with every step: a part of it, of some steps.
+fn grown(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Vec<SceneEntity> {
+    let follows = flight.scenes.iter().any(|it| it.front.is_some());
+    let path = path(part, flight, steps, second);
+    let read = read(part, flight, steps, second);
+    let front = follows.then(|| front(part, flight, steps, second));
+    [path, read].into_iter().chain(front).collect()
 }
 
 /// The way of some steps.
@@ -125,7 +119,8 @@ fn read(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scene
 
 /// The map of a front after some steps, and from the one before on: each piece with the borders of its 90 % band.
 fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
-    let strokes = [(THICK, of(FRONT)), (THIN, opaque(SHADE)), (THIN, opaque(SHADE))];
+    let strokes =
+        [(THICK, of(FRONT)), (THIN, opaque(SHADES[4].colour)), (THIN, opaque(SHADES[4].colour))];
     let scenes = if steps.is_empty() { &[] } else { &flight.scenes[steps.start..=steps.end] };
     let pieces = scenes.split(|it| it.front.is_none()).filter(|piece| !piece.is_empty());
     let lines = pieces.flat_map(|piece| {
@@ -154,7 +149,7 @@ fn known(scene: &Scene, second: u32) -> [SceneEntity; 2] {
         }
         Ground::Credible(bands) => {
             let borders = bands.iter().flat_map(|Band { from, rings }| {
-                let color = Color { a: 0.2 + 0.8 * from, ..opaque(SHADE) };
+                let color = Color { a: 0.2 + 0.8 * from, ..opaque(SHADES[4].colour) };
                 rings.iter().map(move |ring| line(ring, true, THIN, color))
             });
             SceneEntity { lines: borders.collect(), ..ground }
@@ -187,6 +182,7 @@ fn samples(
             (Some(pose(at.into(), 0.0)), Some(Vector3 { x: size, y: size, z: size }));
         let color = |label| Some(opaque(style::of_label(label)));
         match label {
+            0 => {}
             1.. => {
                 let color = color(Label::Positive);
                 entity.spheres.push(SpherePrimitive { pose, size, color });
@@ -195,14 +191,11 @@ fn samples(
                 let color = color(Label::Negative);
                 entity.cubes.push(CubePrimitive { pose, size, color });
             }
-            0 => {}
         }
     }
     entity
 }
 
-const KEEP_OUT: &str = "#c9c9c9";
-const SHADE: &str = "#8653a6";
 /// Viewers have a dark ground or a light one, so the true line is not black, as it is in figures.
 const TRUTH: &str = "#cc79a7";
 

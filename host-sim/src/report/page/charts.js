@@ -30,7 +30,7 @@ const CHARTS = [
   },
   {
     of: false,
-    title: (flight) => `Estimate off the ${flight.boundary ? 'best line' : 'truth'}, deg`,
+    title: (flight) => `Estimate off the ${flight.truth || flight.boundary.length === 0 ? 'truth' : 'best line'}, deg`,
     isLogarithmic: true,
     line: (scene) => scene.estimate?.off_deg,
     told: (scene) => (scene.estimate?.off_deg == null ? 'none' : small(scene.estimate.off_deg)),

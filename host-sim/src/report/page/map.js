@@ -88,15 +88,9 @@ function drawMap(svg, flight, step, width, from) {
   if (isPart) drawInset(sheet, flight, view);
 }
 
-/** Whether a boundary is no longer there. */
-function isPast(stroke) {
-  return stroke.class === 'past-truth';
-}
-
 function drawTruth(svg, flight, at) {
-  if (flight.truth) add(svg, 'path', { class: 'truth', d: through(flight.truth.ends.map(at)) });
-  for (const { ways, stroke } of flight.boundary ?? []) {
-    for (const way of ways) add(svg, 'path', { class: isPast(stroke) ? 'truth past' : 'truth', d: through(way.map(at)) });
+  for (const { ways, stroke } of flight.boundary) {
+    for (const way of ways) add(svg, 'path', { class: stroke.class, d: through(way.map(at)) });
   }
 }
 

@@ -133,10 +133,9 @@ function legend(figure, flight) {
       bands.forEach((_, k) => add(svg, 'rect', { class: 'band', x: 1 + 5 * k, y: 1, width: 25 - 1 - 5 * k, height: 16 }));
     });
   }
-  if (flight.truth) item('the true line', stroke('truth'));
-  for (const { name, stroke: its } of flight.boundary ?? []) item(`the ${name}`, stroke(isPast(its) ? 'truth past' : 'truth'));
+  for (const { name, stroke: { class: its } } of flight.boundary) item(`the ${name}`, stroke(its));
   if (flight.scenes.some((it) => it.front)) {
-    const moves = (flight.boundary ?? []).some((it) => isPast(it.stroke));
+    const moves = flight.boundary.some((it) => it.stroke.class === 'past-truth');
     item(`the front as it ${moves ? 'was when it was' : 'is'} mapped`, stroke('estimate'));
     item('it lies here with a probability of 90 %', box('front'));
   }

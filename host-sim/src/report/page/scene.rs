@@ -40,10 +40,9 @@ pub(crate) struct Flight {
     pub(crate) keep_outs: Vec<Polygon>,
     /// The samples that were given.
     pub(crate) given: Vec<(Point2<f64>, i8)>,
-    /// The true line, where known.
-    pub(crate) truth: Option<SeenLine>,
-    /// The true boundary, where it is known and no fixed line.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    /// The true line, where there is one.
+    truth: Option<LineRecord>,
+    /// The true boundary, where known.
     pub(crate) boundary: Vec<Drawn>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
@@ -159,7 +158,9 @@ impl Rounding {
     }
 
     fn way(self, mut places: Way) -> Way {
-        places.iter_mut().for_each(|at| *at = self.place(*at));
+        for at in &mut places {
+            *at = self.place(*at);
+        }
         places.dedup();
         places
     }
@@ -169,7 +170,9 @@ impl Rounding {
             *ring = self.way(std::mem::take(ring));
         }
         if let Ground::Credible(bands) = &mut ground {
-            bands.iter_mut().for_each(|band| band.rings.retain(|ring| ring.len() > 2));
+            for band in bands {
+                band.rings.retain(|ring| ring.len() > 2);
+            }
         }
         ground
     }
@@ -207,30 +210,18 @@ impl Flight {
         let border = Polygon::from(area);
         let rounding = Rounding::of(&border);
         let picture = Picture::of(planner, recording);
-        let seen = |record: &LineRecord| seen(record, &border, rounding);
         let [(estimate, _), ..] = text::estimates(results);
         let given = |s: &Sample| (rounding.place(s.site.into()), s.label.sign());
-        let taken = steps.iter().zip(&results.steps).zip(&picture.stops);
-        let taken = taken.map(|((step, result), stop)| Some(Taken { step, result, stop }));
         let stage = Stage { recording, rounding, estimate };
-        let mut sums = Sums::default();
-        let scenes = recording.known().zip(iter::once(None).chain(taken)).map(|(belief, taken)| {
-            // Of a front nothing is known before it is found.
-            let of_front = || taken.map_or(0.0, |it: Taken| it.result.bits);
-            let bits = if belief.front().is_some() { of_front() } else { bits(belief) };
-            sums.rise = bits - sums.bits;
-            sums.bits = bits;
-            let expected = taken.and_then(|it| it.result.expected);
-            sums.expected_bits += expected.map_or(0.0, |it| it.bits);
-            stage.scene(belief, taken, sums)
-        });
-        let mut scenes: Vec<_> = scenes.collect();
+        let taken = steps.iter().zip(&results.steps).zip(&picture.stops).map(Some);
+        let mut scenes = Vec::new();
+        for (belief, taken) in recording.known().zip(iter::once(None).chain(taken)) {
+            scenes.push(stage.scene(belief, taken, scenes.last()));
+        }
         if let Some(last) = scenes.last_mut() {
             last.told.extend(words::ended(results));
         }
         let polygon = |it: Polygon| Polygon(rounding.way(it.0));
-        let is_line = mission.world.line().is_some();
-        let boundary = if is_line { Vec::new() } else { picture.truth.clone() };
         Self {
             planner: planner.to_owned(),
             estimate,
@@ -238,8 +229,8 @@ impl Flight {
             follows: !mission.algorithm.seeks_line(),
             keep_outs: area.hulls().map(|hull| polygon(hull.into())).collect(),
             given: mission.oracle().iter().map(given).collect(),
-            truth: results.start.truth.as_ref().map(seen),
-            boundary: boundary.into_iter().map(|it| rounding.drawn(it)).collect(),
+            truth: results.start.truth,
+            boundary: picture.truth.iter().cloned().map(|it| rounding.drawn(it)).collect(),
             area: polygon(border),
             scenes,
             picture,
@@ -247,21 +238,8 @@ impl Flight {
     }
 }
 
-/// Bits that were learnt so far, those of the last step, and those that were expected so far.
-#[derive(Clone, Copy, Default)]
-struct Sums {
-    bits: f64,
-    rise: f64,
-    expected_bits: f64,
-}
-
-/// A step that was taken.
-#[derive(Clone, Copy)]
-struct Taken<'a> {
-    step: &'a Step,
-    result: &'a StepResult,
-    stop: &'a Stop,
-}
+/// A step that was taken, what came of it, and its end.
+type Taken<'a> = ((&'a Step, &'a StepResult), &'a Stop);
 
 /// The mission that scenes are made of.
 struct Stage<'a> {
@@ -272,19 +250,22 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// The scene after a step, or at the start.
-    fn scene(&self, belief: &dyn ReadOut, taken: Option<Taken>, sums: Sums) -> Scene {
+    /// The scene after a step and the scene before it, or at the start.
+    fn scene(&self, belief: &dyn ReadOut, taken: Option<Taken>, before: Option<&Scene>) -> Scene {
         let &Self { recording, rounding, estimate } = self;
         let mission = &recording.mission;
         let area = mission.config.area;
         let knowledge = belief.knowledge();
-        let world = mission.world.after(taken.map_or(0, |it| it.result.step));
+        let step = taken.map(|((_, result), _)| result);
+        let world = mission.world.after(step.map_or(0, |it| it.step));
         // A front has no straight estimate.
         let centre = || beside_truth(mission, &world, belief.estimates()).centre;
         let centre = belief.front().is_none().then(centre).flatten();
-        let Sums { bits, rise, expected_bits } = sums;
-        let step = taken.map(|it| it.result);
-        let read = step.map(|step| (step, rise));
+        // Of a front nothing is known before it is found.
+        let of_front = || step.map_or(0.0, |step| step.bits);
+        let bits = if belief.front().is_some() { of_front() } else { bits(belief) };
+        let read = step.map(|step| (step, bits - before.map_or(0.0, |it| it.bits)));
+        let expected = step.and_then(|step| step.expected).map_or(0.0, |it| it.bits);
         let told = words::stage(recording, read, (&knowledge, bits), (estimate, centre.as_ref()));
         let start = recording.results.start.pose;
         let PoseRecord { x, z, heading } = step.map_or(start, |step| step.pose);
@@ -300,14 +281,14 @@ impl Stage<'_> {
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
             bits,
-            expected_bits,
+            expected_bits: before.map_or(0.0, |it| it.expected_bits) + expected,
             cost: step.map_or(0.0, |step| step.control_cost),
             metres: step.map_or(0.0, |step| step.metres),
             told,
         }
     }
 
-    fn moved(&self, Taken { step, result, stop }: Taken) -> Moved {
+    fn moved(&self, ((step, result), stop): Taken) -> Moved {
         let place = |at: Point2<f64>| self.rounding.place(at);
         let [target, end] = [step.motion.target.site, step.pose.site];
         Moved {
