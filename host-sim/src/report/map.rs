@@ -11,7 +11,7 @@ use planner_core::link::message::MissionArea;
 use crate::report::axes::{Axes, Axis, Scale};
 use crate::report::bands::Band;
 use crate::report::ground::Ground;
-use crate::report::look::{END, Look, MISSING, Mark, START, TRULY, UNREAD};
+use crate::report::look::{END, Look, Mark, START, TRULY};
 use crate::report::numbers;
 use crate::report::picture::{Drawn, Picture};
 use crate::report::placing::{Frame, Placing, foot};
@@ -259,10 +259,8 @@ impl<'a> Map<'a> {
                 self.placing.way(&[at, truly]);
                 self.mark(TRULY, truly);
             }
-            if stop.lacks_reading {
-                self.mark(MISSING, at);
-            } else if !stop.sensed && !follows {
-                self.mark(UNREAD, at);
+            if let Some(mark) = stop.mark {
+                self.mark(mark, at);
             }
             self.placing.mark(at, 4.5);
         }

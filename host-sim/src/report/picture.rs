@@ -14,7 +14,7 @@ use crate::mission::read_out::LEVEL;
 use crate::mission::recording::Recording;
 use crate::mission::results::StepResult;
 use crate::report::ground::{CERTAIN, Ground, REFUTED};
-use crate::report::look::{self, AGAINST, Mark, REFUTES, SMALL_WRONG, WRONG};
+use crate::report::look::{self, AGAINST, MISSING, Mark, REFUTES, SMALL_WRONG, UNREAD, WRONG};
 use crate::report::pieces::Pieces;
 use crate::report::style::{
     BOUND, CANDIDATES, ESTIMATE, FEWEST, FRONT, PAST_TRUTH, PRINTED, Stroke, TRUE_FRONT, TRUTH,
@@ -88,10 +88,8 @@ pub struct Stop {
     pub truly: Option<Point2<f64>>,
     /// Radians.
     pub heading: f64,
-    /// Whether a side of the boundary was sensed there.
-    pub sensed: bool,
-    /// Whether a label was asked for there, and the sensor read nothing.
-    pub lacks_reading: bool,
+    /// How it is marked, where no label is.
+    pub(crate) mark: Option<Mark>,
 }
 
 /// A line or a boundary.
@@ -201,37 +199,30 @@ impl Picture {
         });
         let name = "line that the fewest labels disagree with";
         lines.extend(fewest.map(|line| Drawn::across(area, line, FEWEST, name)));
-        // The number of the step that took a sample; given ones were true at the start.
+        // What each step read.
         let steps = (1..).zip(recording.steps.iter().zip(&results.steps));
-        let taken: Vec<_> = steps
+        let taken: Vec<(usize, Sample)> = steps
             .flat_map(|(number, (step, result))| {
                 let end = step.reading.map(|reading| (step.pose.site, reading));
-                result.passed().chain(end).map(move |label| (number, label))
+                result.passed().chain(end).filter_map(move |it| Some((number, sample(it)?)))
             })
             .collect();
-        let mut next = taken.iter();
-        let number = |s: &Sample| {
-            let mut ahead = next.clone();
-            let found = ahead.find(|(_, label)| *label == (s.site, s.label.into()));
-            found.map_or(0, |(number, _)| {
-                next = ahead;
-                *number
-            })
+        let mut ahead = &taken[..];
+        let mut number = |s: &Sample| {
+            let k = ahead.iter().position(|(_, it)| it == s)?;
+            let number = ahead[k].0;
+            ahead = &ahead[k + 1..];
+            Some(number)
         };
-        // Those of bounds lie far outside of the picture.
-        let (given, first) = (mission.oracle().len(), mission.given.samples().len());
-        let heard: Vec<_>; // a belief in a front keeps no samples
-        let follows = belief.front().is_some();
-        let (oracle, read) = if follows {
-            heard = taken.iter().filter_map(|(_, label)| sample(*label)).collect();
-            (&mission.given.samples()[..given], &heard[..])
+        // Samples of bounds lie far outside of the picture. A belief in a front keeps none.
+        let (oracle, first) = (mission.oracle(), mission.given.samples().len());
+        let (follows, moves) = (belief.front().is_some(), mission.world.moves());
+        let kept = belief.samples().iter().skip(first);
+        // Of a boundary that stands still it does not matter which step it was.
+        let read: Vec<_> = if follows {
+            taken.clone()
         } else {
-            (&belief.samples()[..given], &belief.samples()[first..])
-        };
-        let numbers: Vec<usize> = if follows || mission.world.moves() {
-            read.iter().map(number).collect()
-        } else {
-            vec![0; read.len()]
+            kept.map(|s| (moves.then(|| number(s)).flatten().unwrap_or(0), *s)).collect()
         };
         let disagrees = |s: &Sample| {
             let is_above = |line: &Line| line.distance(s.site.into()) > 0.0;
@@ -243,11 +234,11 @@ impl Picture {
             let ring = wrong.or_else(|| disagrees(s).then_some(AGAINST));
             Dot { ring, ..Dot::new(s.site, mark(s.label)) }
         };
-        let of_step = |(s, number): (&Sample, usize)| {
+        let of_step = |(number, s): (usize, Sample)| {
             let step = number.checked_sub(1).and_then(|it| results.steps.get(it));
             let seeks = step.is_some_and(|it| it.problem.as_deref() == Some("seek"));
             let of_front = if seeks { look::sought } else { look::small };
-            dot(s, number, if follows { of_front } else { look::read })
+            dot(&s, number, if follows { of_front } else { look::read })
         };
         // No belief takes in the labels of an audit.
         let audit = results.end.goal.and_then(|goal| goal.audit);
@@ -255,16 +246,16 @@ impl Picture {
         let audited = (1..).zip(&recording.steps).filter_map(|(number, step)| {
             let is_of_audit = step.motion.stage == Some(Stage::Audit);
             let s = sample((step.pose.site, step.reading.filter(|_| is_of_audit)?))?;
-            let dot = of_step((&s, number));
+            let dot = of_step((number, s));
             Some(if refuted == Some(number) { Dot { ring: Some(REFUTES), ..dot } } else { dot })
         });
-        let oracle = oracle.iter().map(|s| dot(s, 0, look::given));
-        let samples = oracle.chain(read.iter().zip(numbers).map(of_step));
+        let given = oracle.iter().map(|s| dot(s, 0, look::given));
+        let samples = given.chain(read.into_iter().map(of_step));
         Self {
             ground: Ground::of(&**belief, *area),
             says: if audit.is_some_and(|it| it.refuted.is_some()) { REFUTED } else { CERTAIN },
             samples: samples.chain(audited).collect(),
-            given,
+            given: oracle.len(),
             start: Some(Point2::from(mission.start.site)),
             stops: stops(recording),
             truth: truth(mission, recording.steps.len()),
@@ -360,8 +351,11 @@ fn stops(Recording { mission, results, .. }: &Recording) -> Vec<Stop> {
         at: Point2::new(step.pose.x, step.pose.z),
         truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
         heading: step.pose.heading,
-        sensed: step.label.is_some_and(|label| label != 0),
-        lacks_reading: step.label.is_none() && step.expected.is_some(),
+        mark: match (step.label, step.expected) {
+            (None, Some(_)) => Some(MISSING),
+            (None | Some(0), _) => Some(UNREAD).filter(|_| mission.algorithm.seeks_line()),
+            _ => None,
+        },
     };
     results.steps.iter().map(stop).collect()
 }

@@ -16,7 +16,7 @@ use crate::report::picture::{Drawn, Picture, Stop};
 use crate::report::pieces::ends;
 use crate::report::text;
 use crate::world::World;
-use crate::world::extent::{around, span};
+use crate::world::extent::around;
 use crate::world::polygon::Polygon;
 use crate::world::way::Way;
 
@@ -80,7 +80,6 @@ pub(crate) struct Scene {
     /// The recommended estimate.
     pub(crate) estimate: Option<SeenLine>,
     /// Where the front is known best, if one is followed and found.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) front: Option<SeenFront>,
     /// The slopes left, as intervals of degrees.
     pub(crate) slopes: Vec<[f64; 2]>,
@@ -114,7 +113,6 @@ pub(crate) struct SeenFront {
 #[derive(Debug, Serialize)]
 pub(crate) struct Moved {
     /// Whether a front was sought.
-    #[serde(skip_serializing_if = "is_false")]
     sought: bool,
     /// What it answers, in short.
     #[serde(skip)]
@@ -147,8 +145,7 @@ struct Rounding {
 
 impl Rounding {
     fn of(border: &Polygon) -> Self {
-        let [low, high] = around(border.0.iter().copied()).unwrap_or_default();
-        Self { unit: 10_f64.powf(((high - low).amax() / GRAIN).log10().floor()) }
+        Self { unit: 10_f64.powf((size(border) / GRAIN).log10().floor()) }
     }
 
     fn place(self, at: Point2<f64>) -> Point2<f64> {
@@ -196,11 +193,7 @@ impl Rounding {
 impl Flight {
     /// The longer side of the area, metres.
     pub(crate) fn size(&self) -> f64 {
-        let side = |axis: usize| {
-            let [from, to] = span(self.area.0.iter().map(|at| at[axis]));
-            to - from
-        };
-        side(0).max(side(1))
+        size(&self.area)
     }
 
     /// A mission as it was flown by a planner of this name.
@@ -307,6 +300,12 @@ impl Stage<'_> {
     }
 }
 
+/// The longer side of what is around a polygon.
+fn size(Polygon(corners): &Polygon) -> f64 {
+    let [low, high] = around(corners.iter().copied()).unwrap_or_default();
+    (high - low).amax()
+}
+
 fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
     let &LineRecord { intercept, angle, coefficients: [a, b, c], error, .. } = record;
     let line = Line::from_coefficients(a, b, c);
@@ -318,11 +317,6 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
         off_deg: error.map(|LineError { degrees, .. }| degrees),
         misclassified: error.map(|LineError { misclassified, .. }| misclassified),
     }
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes it so")]
-const fn is_false(it: &bool) -> bool {
-    !*it
 }
 
 /// Whether the front that is known after a step is beside the robot. While this drives back to where it began, that place
