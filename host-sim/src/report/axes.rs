@@ -3,7 +3,7 @@
 use nalgebra::{Point2, Vector2};
 
 use crate::report::placing::Frame;
-use crate::report::shapes::{Anchor, Spot, width};
+use crate::report::shapes::{Anchor, Spot, border, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::BORDER;
 
@@ -92,13 +92,7 @@ impl Axes {
         const TICK: f64 = 5.0;
         let ([left, right], [bottom, top]) = (self.x.pixels, self.z.pixels);
         let corner = |x, z| Spot::new(x, z);
-        let mut ways = vec![vec![
-            corner(left, bottom),
-            corner(right, bottom),
-            corner(right, top),
-            corner(left, top),
-            corner(left, bottom),
-        ]];
+        let mut ways = vec![border(corner(left, bottom), corner(right, top))];
         for (figure, name) in self.x.ticks() {
             let foot = corner(self.x.at(figure), bottom);
             ways.push(vec![foot, foot + Vector2::new(0.0, TICK)]);

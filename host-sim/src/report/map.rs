@@ -15,7 +15,7 @@ use crate::report::look::{END, Look, Mark, START, TRULY};
 use crate::report::numbers;
 use crate::report::picture::{Drawn, Picture};
 use crate::report::placing::{Frame, Placing, foot};
-use crate::report::shapes::{Anchor, Spot, width};
+use crate::report::shapes::{self, Anchor, Spot, width};
 use crate::report::sheet::Sheet;
 use crate::report::style::{
     BLANK, BORDER, DOUBTFUL, FRONT, FRONT_BAND, Fill, GROUND_NEGATIVE, GROUND_POSITIVE, HEADING,
@@ -125,10 +125,8 @@ impl<'a> Map<'a> {
         map.placing.way(&map.border);
         let is_all = area.sides().next().is_none() && places.iter().all(|at| border.holds(*at));
         if !is_all {
-            let ([left, right], [bottom, top]) = (map.axes.x.pixels, map.axes.z.pixels);
-            let corners = [(left, bottom), (right, bottom), (right, top), (left, top)];
-            let all: Vec<_> = corners.iter().map(|(x, z)| Spot::new(*x, *z)).collect();
-            map.sheet.ground(OUTSIDE, &[all, map.spots(&border.0)]);
+            let all = shapes::border(map.axes.at(min), map.axes.at(max));
+            map.sheet.ground(OUTSIDE, &[all[..4].to_vec(), map.spots(&border.0)]);
             map.sheet.name(Look::Ground(OUTSIDE), "outside the area");
         }
         map
@@ -324,16 +322,10 @@ impl<'a> Map<'a> {
             let from = (at - min) * scale;
             corner + Vector2::new(from.x, -from.y)
         };
-        let ring = |[from, to]: [Point2<f64>; 2]| {
-            let corners = [(from.x, from.y), (to.x, from.y), (to.x, to.y), (from.x, to.y)];
-            let mut ring: Vec<_> =
-                corners.iter().map(|(x, z)| spot(&Point2::new(*x, *z))).collect();
-            ring.push(ring[0]);
-            ring
-        };
-        let all = ring([min, max]);
         let ([left, right], [bottom, top]) = (self.axes.x.figures, self.axes.z.figures);
-        let part = ring([Point2::new(left, bottom), Point2::new(right, top)]);
+        let ring = |from, to| shapes::border(spot(&from), spot(&to));
+        let all = ring(min, max);
+        let part = ring(Point2::new(left, bottom), Point2::new(right, top));
         self.sheet.ground(BLANK, std::slice::from_ref(&all));
         self.sheet.ways(INSET, [&all[..], &part[..]]);
         let of = max - min;

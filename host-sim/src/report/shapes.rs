@@ -65,6 +65,11 @@ pub(crate) fn square(at: Spot, half: f64) -> Rectangle {
     rectangle(at - Vector2::repeat(half), at + Vector2::repeat(half))
 }
 
+/// The way round a rectangle from one of its corners, by the opposite one, and back.
+pub(crate) fn border(from: Spot, to: Spot) -> Vec<Spot> {
+    vec![from, Spot::new(to.x, from.y), to, Spot::new(from.x, to.y), from]
+}
+
 pub(crate) fn rectangle(from: Spot, to: Spot) -> Rectangle {
     Rectangle::new()
         .set("x", rounded(from.x))
