@@ -13,7 +13,7 @@ use crate::{GOOD, folder, names, prints, text, wait_until};
 /// Signals by name, with their numbers.
 const SIGNALS: [(&str, i32); 3] = [("HUP", 1), ("INT", 2), ("TERM", 15)];
 
-const LONG: &str = "campaign --fields 10000000 --csv c.csv";
+const LONG: &str = "campaign --fields 1000000 --csv c.csv";
 
 /// A mask of signals in the status of a process; no signal where there is no such file.
 fn has_signal(process: &str, mask: &str, number: i32) -> bool {
@@ -81,7 +81,7 @@ fn an_interrupted_campaign_leaves_its_rows() {
 #[test]
 fn an_interrupted_campaign_without_rows_leaves_nothing() {
     let folder = folder();
-    let campaign = host_sim(folder.path(), "campaign --fields 10000000");
+    let campaign = host_sim(folder.path(), "campaign --fields 1000000");
     let id = campaign.id().to_string();
     wait_until("it handles signals", || has_signal(&id, "SigCgt", 15));
     assert_eq!(ended(campaign, "TERM"), (Some(128 + 15), String::new()));

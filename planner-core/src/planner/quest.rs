@@ -284,13 +284,17 @@ impl Quest {
         self.is_stuck = false;
     }
 
-    /// A boundary is found: the last labels within so many lattice units of a place tell nothing of others.
+    /// A boundary is found: the last labels within so many lattice units of a place tell nothing of others, if several are
+    /// sought.
     pub(crate) fn follow(&mut self, place: Site, within: f32) {
+        self.phase = Phase::Follow;
+        if self.field.seeking().most_patches() == 1 {
+            return;
+        }
         let recent = self.field.memory.recent;
         for it in recent.iter().filter(|it| distance(it.site - place) <= within) {
             self.field.take_back(it.site, it.label);
         }
-        self.phase = Phase::Follow;
     }
 
     /// A patch is mapped, in this extent. Whether another is sought: the search goes on beside it.

@@ -6,7 +6,7 @@
 
 #include "planner.h"
 
-static uint64_t memory[1200];
+static uint64_t memory[1250];
 static uint8_t kept[8800];
 
 static void print(double number) {
