@@ -12,13 +12,13 @@ use crate::mission::strict::{Table, wrong};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SeekTable {
-    /// The radius of the smallest patch that is to be found, metres [default: a sixteenth of the mean of the area's sides].
+    /// The radius of the smallest patch to be found, metres [default: a sixteenth of the mean of the area's sides].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patch: Option<f64>,
     /// What the boundary most likely is: `spill`, `coast`, or `either` [default: `either`].
     #[serde(default)]
     pub likely: Likely,
-    /// How many patches are mapped at most, one after the other, 1 to 8 [default: 1].
+    /// Patches to map, 1 to 8 [default: 1].
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub patches: u8,
 }
