@@ -304,7 +304,6 @@ impl Quest {
             return false;
         }
         self.field.leave_out(extent);
-        (self.route, self.approach) = (Route::NONE, Approach::NONE);
         self.search_on();
         (self.is_fresh, self.is_stuck) = (true, false);
         true

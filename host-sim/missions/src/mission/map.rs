@@ -124,14 +124,12 @@ impl MapRecord {
     pub fn after(steps: &[Mapped], is_over: bool) -> Self {
         let pieces = pieces(steps);
         let fronts = fronts(&pieces);
-        let (closed, is_closed) = match fronts.split_last() {
-            Some((last, before)) => {
-                let is_closed =
-                    is_over && turns(last) > ROUND || !before.is_empty() && is_round(last);
-                (before.len() + usize::from(is_closed), is_closed)
-            }
-            None => (0, false),
-        };
+        let is_known = steps.last().is_some_and(|it| it.is_known);
+        let is_closed = fronts.last().is_some_and(|last| {
+            let has_left = !is_known && is_back(last);
+            turns(last) > ROUND && (is_over || has_left)
+        });
+        let closed = fronts.len().saturating_sub(usize::from(!is_closed));
         let along = |pair: &[(usize, VertexRecord)]| match pair {
             [(_, from), (_, to)] => along(from, to),
             _ => 0.0,
@@ -146,10 +144,9 @@ impl MapRecord {
         let found = steps.iter().find(|it| it.is_known);
         let known = steps.iter().rfind(|it| it.is_known);
         let (last, end) = (vertices.last(), steps.last());
-        let is_known = end.is_some_and(|it| it.is_known);
         let state = match found {
             Some(_) if is_closed => State::Closed,
-            Some(_) if is_known => State::Followed,
+            Some(_) if is_known || is_over => State::Followed,
             Some(_) => State::Lost,
             None => State::Sought,
         };
@@ -176,57 +173,57 @@ impl MapRecord {
 /// ends turns less.
 const ROUND: f64 = 4.0;
 
-/// A place is near another within so many times the way between two places of the map.
+/// A place is near the last one within so many times the way to the one before.
 const NEAR: f64 = 4.0;
 
+/// Some pieces of a map, in their order.
+type Part = [Vec<(usize, VertexRecord)>];
+
 /// The pieces by the fronts that they are of. Where the robot has gone all round one, what begins elsewhere is of another.
-fn fronts(pieces: &Places) -> Vec<&[Vec<(usize, VertexRecord)>]> {
-    let (mut fronts, mut begins) = (Vec::new(), 0);
-    for n in 1..pieces.len() {
-        let front = &pieces[begins..n];
-        let next = pieces[n].first().map(|it| it.1);
-        if next.is_some_and(|next| is_round(front) && !is_near(front, &next)) {
+fn fronts(pieces: &Places) -> Vec<&Part> {
+    let (mut fronts, mut begins, mut turned) = (Vec::new(), 0, 0.0);
+    for (n, pair) in (1..).zip(pieces.windows(2)) {
+        turned += turn(&pair[0]);
+        let (front, next) = (&pieces[begins..n], &pair[1][0].1);
+        if f64::abs(turned) > ROUND && is_back(front) && !is_near(front, next) {
             fronts.push(front);
-            begins = n;
+            (begins, turned) = (n, 0.0);
         }
     }
-    if begins < pieces.len() {
-        fronts.push(&pieces[begins..]);
-    }
+    fronts.extend(pieces.get(begins..).filter(|it| !it.is_empty()));
     fronts
 }
 
-/// Whether the last place of a front is near another.
-fn is_near(pieces: &[Vec<(usize, VertexRecord)>], other: &VertexRecord) -> bool {
-    let count = pieces.iter().map(Vec::len).sum::<usize>();
-    let way: f64 = pieces
-        .iter()
-        .flat_map(|it| it.windows(2))
-        .map(|it| (it[1].1.at() - it[0].1.at()).norm())
-        .sum();
-    let last = pieces.iter().rev().find_map(|it| it.last()).map(|it| it.1);
-    let spacing = way / count as f64;
-    last.is_some_and(|last| (last.at() - other.at()).norm() <= NEAR * spacing + last.half_width)
+/// Whether a front comes back to its first place.
+fn is_back(front: &Part) -> bool {
+    is_near(front, &front[0][0].1)
 }
 
-/// Whether the robot has gone all round a front and come back to its first place.
-fn is_round(pieces: &[Vec<(usize, VertexRecord)>]) -> bool {
-    let first = pieces.iter().find_map(|it| it.first()).map(|it| it.1);
-    turns(pieces) > ROUND && first.is_some_and(|first| is_near(pieces, &first))
+/// Whether the last place of a front is near another, by the way between its last places.
+fn is_near(front: &Part, other: &VertexRecord) -> bool {
+    let mut last = front.iter().rev().flat_map(|it| it.iter().rev()).map(|it| &it.1);
+    let (Some(end), Some(before)) = (last.next(), last.next()) else { return false };
+    let off = |it: &VertexRecord| (it.at() - end.at()).norm();
+    off(other) <= NEAR * off(before) + end.half_width
 }
 
 /// By how much the front turns along its pieces, radians.
-fn turns(pieces: &[Vec<(usize, VertexRecord)>]) -> f64 {
+fn turns(front: &Part) -> f64 {
+    front.iter().map(|piece| turn(piece)).sum::<f64>().abs()
+}
+
+/// The same along a piece, to the left.
+fn turn(piece: &[(usize, VertexRecord)]) -> f64 {
     let turn = |pair: &[(usize, VertexRecord)]| {
         let by = pair[1].1.heading - pair[0].1.heading;
         libm::remainder(by, std::f64::consts::TAU)
     };
-    pieces.iter().flat_map(|it| it.windows(2)).map(turn).sum::<f64>().abs()
+    piece.windows(2).map(turn).sum()
 }
 
 /// Metres between the pieces in straight lines, and of a closed front from the last place to the first. A piece begins
 /// near where the one before ended, or the robot has driven back to the first place.
-fn gaps(pieces: &[Vec<(usize, VertexRecord)>], is_closed: bool) -> f64 {
+fn gaps(pieces: &Part, is_closed: bool) -> f64 {
     let Some((_, first)) = pieces.first().and_then(|piece| piece.first()) else { return 0.0 };
     let mut ends = pieces.iter().filter_map(|piece| piece.last());
     let starts = pieces.iter().skip(1).filter_map(|piece| piece.first());

@@ -1,9 +1,11 @@
 //! A sum of Gaussians: three for each of five gaits.
 //!
-//! On the way a share of the mass leaves its gait, and comes back as one Gaussian into each: the more
-//! into corners, the more of these there were before. Then more leaves, too. So a jagged shore has wider places than a smooth one. A label splits each Gaussian:
-//! the label tells nothing with the chance that it is false, or it is true. Those that change the distribution of the
-//! offset the least are merged until three are left (Runnalls 2007).
+//! On the way a share of the mass leaves its gait, and comes back as one Gaussian into each. Where a front has often turned
+//! corners, more leaves, and more of it comes back into corners. So places of a jagged shore are wider than those of a
+//! smooth one.
+//!
+//! A label splits each Gaussian: the label tells nothing with the chance that it is false, or it is true. Those that change
+//! the distribution of the offset the least are merged until three are left (Runnalls 2007).
 
 use crate::belief::curve::gaussian::{BEND, Gait, Gaussian, Offset};
 use crate::belief::curve::mixture::Mixture;
@@ -86,10 +88,10 @@ impl Bank {
     /// Begins with deviations of offset and turn, where it is: it is large.
     #[inline(never)]
     pub(crate) fn begin(&mut self, [offset, turn]: [f32; 2]) {
-        for (some, usual) in self.of.iter_mut().zip(usual(self.corners)) {
+        for (some, share) in self.of.iter_mut().zip(shares(self.corners)) {
             for (it, side) in some.iter_mut().zip([-1.0, 0.0, 1.0]) {
                 let spread = [offset, APART * turn, BEND];
-                *it = Gaussian::about(usual / EACH as f32, side * turn, spread);
+                *it = Gaussian::about(share / EACH as f32, side * turn, spread);
             }
         }
     }
@@ -142,12 +144,12 @@ impl Bank {
             pool.join(it, it.offset());
         }
         let all = pool.offset();
-        for (some, usual) in self.of.iter_mut().zip(usual(self.corners)) {
+        for (some, share) in self.of.iter_mut().zip(shares(self.corners)) {
             let mut crowd = Crowd::NONE;
             for (k, it) in some.iter().enumerate() {
                 crowd.add(k, Offset { weight: it.weight * (1.0 - leaves), ..it.offset() });
             }
-            crowd.add(EACH, Offset { weight: leaves * usual, ..all });
+            crowd.add(EACH, Offset { weight: leaves * share, ..all });
             crowd.settle(some, &pool);
         }
     }
@@ -217,8 +219,8 @@ impl Bank {
     }
 }
 
-/// What comes back into each gait where the front went round corners for so much of its way.
-fn usual(corners: f32) -> impl Iterator<Item = f32> {
+/// The share of each gait where the front went round corners for so much of its way.
+fn shares(corners: f32) -> impl Iterator<Item = f32> {
     let smooth = (1.0 - corners) / (1.0 - CORNERS);
     let factor = move |n: usize| if n < SMOOTH { smooth } else { corners / CORNERS };
     GAITS.iter().enumerate().map(move |(n, gait)| gait.prior * factor(n))
