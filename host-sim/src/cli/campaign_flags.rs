@@ -24,9 +24,6 @@ use crate::world::noise::{Extent, NoiseModel, limit};
 /// Points that the oracle gives in a standard field.
 const ORACLE: usize = 4;
 
-/// Fields at most: figures are sorted in memory, some 300 MB of it.
-pub(crate) const MOST_FIELDS: u64 = 1_000_000;
-
 /// The settings that determine the rows of a campaign.
 #[derive(Debug, Args)]
 pub(crate) struct CampaignFlags {
@@ -39,7 +36,7 @@ pub(crate) struct CampaignFlags {
             ("fronts", ArgPredicate::IsPresent, "300"),
             ("patches", ArgPredicate::IsPresent, "200"),
         ]),
-        value_parser = clap::value_parser!(u64).range(1..=MOST_FIELDS)
+        value_parser = clap::value_parser!(u64).range(1..=1_000_000)
     )]
     pub(crate) fields: u64,
     /// Steps in each, 1 to 64; where labels are true, or with --labels or --price, 1 to 10000

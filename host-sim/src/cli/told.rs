@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use crate::campaign::accuracy::{self, Accuracy};
 use crate::campaign::calibration::{self, Calibrated};
@@ -23,6 +23,9 @@ pub(crate) struct Told {
     /// What to draw.
     pub(crate) curves: Curves,
 }
+
+/// Rows of a planner at most. Each takes 96 bytes while their figures are sorted, and half of that besides.
+const MOST_ROWS: u64 = 10_000_000;
 
 /// Which fields are flown, and where their rows go.
 #[derive(Clone)]
@@ -67,6 +70,15 @@ fn fly<M: Measure, S>(
     Flown { fields, csv }: &Flown,
     sum: impl Fn(&Campaign, &mut dyn Iterator<Item = Result<Measured<M::Checkpoint>>>) -> Result<S>,
 ) -> Result<Vec<S>> {
+    for campaign in &campaigns.of_each {
+        let (missions, stages) = (fields.end - fields.start, campaign.stages(measure).len());
+        if missions * stages as u64 > MOST_ROWS {
+            bail!(
+                "--fields: found {missions}, with {stages} rows each, expected {MOST_ROWS} rows at most, as they are sorted in \
+                 memory"
+            );
+        }
+    }
     let planners = campaigns.planners();
     let header = planners.header::<M::Checkpoint>()?;
     let file = csv.map(|path| RowsFile::open(path, &header)).transpose()?;

@@ -220,7 +220,7 @@ impl Campaign {
     }
 
     /// The stages at which its missions have rows.
-    fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
+    pub fn stages<M: Measure>(&self, measure: &M) -> Vec<u32> {
         if self.every { (1..=self.length()).collect() } else { measure.stages(self.length()) }
     }
 

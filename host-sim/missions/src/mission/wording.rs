@@ -11,8 +11,9 @@ use crate::output::kind;
 
 /// What to write for a key, or for the flag of the same name. A name without a point is that of every key that ends
 /// with it.
-const EXPECTED: [(&str, &str); 83] = [
+const EXPECTED: [(&str, &str); 84] = [
     ("--area", "two sides in metres, as 20,40"),
+    ("--from", "a whole number, 0 to 1000000000"),
     ("--p-prior", "the a and b of a Beta prior, as 8,2"),
     ("acceptance", "metres above 0"),
     ("algorithm", "the name of a planner in quotation marks, as \"lookahead\""),
