@@ -114,7 +114,7 @@ pub(crate) struct CampaignFlags {
     #[arg(long, conflicts_with_all = ["trusted_radius", "fields_csv"])]
     from_nothing: bool,
     /// What a label costs, metres driven; labels are then sought all along the line (lookahead) [default: none; with
-    /// --labels up to an eighth of the mean side, by how far --steps lead]
+    /// --labels up to a fifth of the mean side, by how far --steps lead]
     #[arg(long, value_name = "METRES|none")]
     price: Option<Price>,
     /// Bits that a label must be expected to carry, else it is not read (lookahead) [default: 0]

@@ -25,11 +25,18 @@ use crate::search::motions::Leg;
 use crate::search::objective::Effort;
 
 /// Places along the estimate.
-const ALONG: u16 = 17;
+const ALONG: u16 = 9;
 
 /// A label where a way ends is read if it is expected to tell so much, as a share of the most that one can. Else the next
-/// plan finds a better place in reach.
+/// plan finds a better place in reach. An end of a motion has to tell this share of what the best end does: a label that
+/// hardly any line doubts shrinks the variance by much, but seldom.
 const WORTHWHILE: f32 = 0.9;
+
+/// Places along the estimate are moved across it until the chance that a line is above differs from one half by less.
+const LEVEL: f32 = 0.05;
+
+/// Shares of lines that this takes at most for each place.
+const ASKS: usize = 12;
 
 /// Places along the estimate begin and end at this share of it.
 const END: f32 = 0.01;
@@ -47,7 +54,7 @@ const MORE: u16 = 2;
 const MORE_ROUND: u16 = 16;
 
 /// The usual price of a label, as a share of the mean of the area's sides.
-const USUAL: f32 = 0.125;
+const USUAL: f32 = 0.2;
 
 /// All of the area, one label deep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,7 +81,7 @@ impl Far {
         is_price.then_some(Self { price_mm, labels: 0 }).ok_or(RANGE)
     }
 
-    /// At the usual price: an eighth of the mean of the sides of the rectangle around an area.
+    /// At the usual price: a fifth of the mean of the sides of the rectangle around an area.
     pub fn across(area: &impl Workspace) -> Self {
         let price = f64::from(USUAL * area.bounds().mean_side());
         let price_mm = libm::round(price * 1e3 / f64::from(UNITS_PER_METRE)) as u32;
@@ -118,7 +125,9 @@ impl Far {
         let outlook = Outlook::of(belief, bounds, (price, bits), to_come, goal)?;
         let worth = |site: Site| -outlook.cost(site, pose.site);
         let mut best = None;
-        for it in &many(predictor, belief.ground(), lookout, pose) {
+        let ends = many(predictor, belief.ground(), lookout, pose);
+        let least = ends.first().map_or(0.0, |most| WORTHWHILE * most.worth);
+        for it in ends.iter().filter(|it| it.worth >= least) {
             let (action, target, worth) = (it.action, it.target, worth(it.target.site));
             Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
         }
@@ -128,7 +137,7 @@ impl Far {
             places.add(Place { site, worth: worth(site) });
         };
         match journey.now {
-            Rest::None => sites(&chord)
+            Rest::None => sites(predictor, &chord, outlook.deviation())
                 .filter(|site| tells(belief, predictor, lookout, *site, 0.0))
                 .for_each(consider),
             Rest::To(site, _) => consider(site),
@@ -148,11 +157,32 @@ impl Far {
     }
 }
 
-/// Sites along the estimate.
-fn sites(chord: &Chord) -> impl Iterator<Item = Site> {
-    (0..ALONG).filter_map(|k| {
-        let share = END + (1.0 - 2.0 * END) * f32::from(k) / f32::from(ALONG - 1);
-        chord.site(share, 0.0)
+/// Sites along the estimate, where lines deviate from it by so many lattice units. A few unlikely lines far off draw the
+/// estimate, as it is their mean, away from where both labels are as likely. So each site lies there.
+fn sites<P: Prediction>(
+    predictor: &P,
+    chord: &Chord,
+    deviation: f32,
+) -> impl Iterator<Item = Site> {
+    (0..ALONG).filter_map(move |k| {
+        let along = END + (1.0 - 2.0 * END) * f32::from(k) / f32::from(ALONG - 1);
+        let mut site = chord.site(along, 0.0)?;
+        let (mut aside, mut step) = (0.0, 0.125 * deviation);
+        let (mut was_right, mut has_crossed) = (None, false);
+        for _ in 0..ASKS {
+            let off = predictor.share_above(site) - 0.5;
+            if off.abs() < LEVEL {
+                break;
+            }
+            // The farther to the left a place lies, the more lines have it on their +1 side.
+            let is_right = off < 0.0;
+            has_crossed |= was_right.is_some_and(|was| was != is_right);
+            was_right = Some(is_right);
+            step *= if has_crossed { 0.5 } else { 2.0 };
+            aside += if is_right { step } else { -step };
+            site = chord.site(along, aside)?;
+        }
+        Some(site)
     })
 }
 

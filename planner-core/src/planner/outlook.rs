@@ -83,6 +83,11 @@ impl<'a, S: Spread + 'a> Outlook<S> {
         (to_go.whole > 0.0).then_some(Self { spread, to_go })
     }
 
+    /// How far lines lie from the estimate, lattice units.
+    pub(crate) fn deviation(&self) -> f32 {
+        sqrt(self.to_go.whole) * self.to_go.chord.lever() / self.spread.lever()
+    }
+
     /// What it costs to read the next label at one site, coming from another; lattice units.
     pub(crate) fn cost(&self, site: Site, from: Site) -> f32 {
         distance(site - from) + self.to_go.cost(self.spread.after(site), site)

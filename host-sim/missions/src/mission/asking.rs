@@ -86,7 +86,7 @@ pub struct AskTable {
 /// The price of a label that fits a mission of so many steps and labels. `None` where look-ahead within one motion is
 /// better.
 ///
-/// With the usual price, an eighth of the mean side, the robot drives about once across the area. Where the motions without
+/// With the usual price, a fifth of the mean side, the robot drives about once across the area. Where the motions without
 /// a label lead less far, the price falls with the square of that. Some are lost: a drive ends beside a place, and a
 /// vehicle that goes round to turn needs several to each place.
 fn fitting_price(
@@ -98,7 +98,7 @@ fn fitting_price(
     let lost = if turns { 4.0 } else { 5.0 * f64::from(labels) };
     let usual = Far::across(area).price();
     let grid = vehicle.grid();
-    let per_motion = f64::from(grid.reach_m(grid.speeds() - 1)) / (8.0 * usual);
+    let per_motion = f64::from(grid.reach_m(grid.speeds() - 1)) / (5.0 * usual);
     let across = |motions: f64| (motions * per_motion).clamp(0.0, 1.0);
     let led = across(f64::from(steps) - f64::from(labels) - lost);
     // One motion to each label may lead across by itself: then far sight needs half of the way.
