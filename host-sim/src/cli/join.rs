@@ -8,10 +8,11 @@ use clap::Args;
 
 use crate::cli::format::Format;
 use crate::cli::help;
-use crate::output::file::{json, prepare};
+use crate::cli::replay::write;
+use crate::output::file::prepare;
 use crate::output::notes::warn;
 use crate::replay::crs::Crs;
-use crate::replay::joined_map::JoinedMap;
+use crate::replay::joined::JoinedMap;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::JOIN)]
@@ -53,22 +54,9 @@ pub(crate) fn join(args: &JoinArgs) -> Result<String> {
         }
     }
     let joined = JoinedMap::read(&args.maps, args.crs.as_ref())?;
-    // All is made before anything is written.
-    let contents = [
-        map.as_ref().map(|_| joined.csv()).transpose()?,
-        figure.as_ref().map(|_| joined.figure()).transpose()?,
-        geojson.as_ref().map(|_| joined.geojson()).transpose()?,
-    ];
-    for (output, content) in [map, figure, geojson].into_iter().zip(contents) {
-        if let (Some(output), Some(content)) = (output, content) {
-            output.write(content)?;
-        }
-    }
-    if let Some(why) = joined.warning() {
+    let (text, warning) = write(&joined, [figure, geojson, map], args.format)?;
+    if let Some(why) = warning {
         warn("join", why);
     }
-    Ok(match args.format {
-        Format::Text => joined.report(),
-        Format::Json => json(&joined.record()),
-    })
+    Ok(text)
 }

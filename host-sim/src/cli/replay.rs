@@ -11,14 +11,16 @@ use crate::cli::done::Done;
 use crate::cli::format::Format;
 use crate::cli::help;
 use crate::mission::scenario;
-use crate::output::file::{json, prepare};
+use crate::output::file::{Output, prepare};
 use crate::output::notes::warn;
+use crate::output::plain;
+use crate::replay::Report;
 use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
 use crate::replay::delimiter::Delimiter;
-use crate::replay::front_map::FrontMap;
-use crate::replay::record::Replay;
+use crate::replay::front::FrontMap;
+use crate::replay::line::Replay;
 use crate::replay::rows::Layout;
 use crate::world::errors::Errors;
 
@@ -107,15 +109,6 @@ fn front(text: &str) -> Result<Front> {
 /// The exit status if no straight line explains the labels, or no front is known, and `--strict` asks for one.
 const UNEXPLAINED: u8 = 1;
 
-/// What a file says: the content of each output, what to print, and why not to rely on it.
-struct Said {
-    figure: Option<String>,
-    geojson: Option<String>,
-    map: Option<String>,
-    text: String,
-    warning: Option<String>,
-}
-
 /// Reads them, and what to print.
 pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
     let asked = [
@@ -134,21 +127,12 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
         keeps: args.geojson.is_some(),
     };
     let trust = Trust { p: args.p, tolerance: args.tolerance.unwrap_or(0.0) };
-    let wants = outputs.each_ref().map(Option::is_some);
-    // All is made before anything is written.
-    let (name, said) = if let Some(front) = args.front {
-        let map = FrontMap::read(&args.samples, &layout, front, trust)?;
-        (map.name().to_owned(), front_said(&map, wants, args.format)?)
-    } else {
-        let replay = Replay::read(&args.samples, &layout, trust)?;
-        (replay.name().to_owned(), line_said(&replay, wants, args.format)?)
+    let said: Box<dyn Report> = match args.front {
+        Some(front) => Box::new(FrontMap::read(&args.samples, &layout, front, trust)?),
+        None => Box::new(Replay::read(&args.samples, &layout, trust)?),
     };
-    let Said { figure, geojson, map, text, warning } = said;
-    for (output, content) in outputs.into_iter().zip([figure, geojson, map]) {
-        if let (Some(output), Some(content)) = (output, content) {
-            output.write(content)?;
-        }
-    }
+    let (text, warning) = write(&*said, outputs, args.format)?;
+    let name = plain::name(&args.samples.display().to_string());
     let failure = match warning {
         Some(why) if args.strict => Some((anyhow!("{name}: {why}"), UNEXPLAINED)),
         Some(why) => {
@@ -160,28 +144,24 @@ pub(crate) fn replay(args: &ReplayArgs) -> Result<Done> {
     Ok(Done { text, failure })
 }
 
-fn line_said(replay: &Replay, [figure, geojson, _]: [bool; 3], format: Format) -> Result<Said> {
-    Ok(Said {
-        geojson: geojson.then(|| replay.geojson()).transpose()?,
-        figure: figure.then(|| replay.figure()).transpose()?,
-        map: None,
-        text: match format {
-            Format::Text => replay.report(),
-            Format::Json => json(&replay.record()),
-        },
-        warning: replay.warning(),
-    })
-}
-
-fn front_said(it: &FrontMap, [figure, geojson, map]: [bool; 3], format: Format) -> Result<Said> {
-    Ok(Said {
-        geojson: geojson.then(|| it.geojson()).transpose()?,
-        figure: figure.then(|| it.figure()).transpose()?,
-        map: map.then(|| it.csv()).transpose()?,
-        text: match format {
-            Format::Text => it.report(),
-            Format::Json => json(&it.record()),
-        },
-        warning: it.warning(),
-    })
+/// Writes a report as a figure, for a map and as a file of vertices, each if it is wanted. Returns what to print, and why
+/// not to rely on it. All is made before anything is written.
+pub(crate) fn write(
+    said: &dyn Report,
+    [figure, geojson, map]: [Option<Output>; 3],
+    format: Format,
+) -> Result<(String, Option<String>)> {
+    let contents = [
+        figure.map(|to| anyhow::Ok((to, said.figure()?))).transpose()?,
+        geojson.map(|to| anyhow::Ok((to, said.geojson()?))).transpose()?,
+        map.map(|to| anyhow::Ok((to, said.csv()?))).transpose()?,
+    ];
+    let text = match format {
+        Format::Text => said.words(),
+        Format::Json => said.json(),
+    };
+    for (output, content) in contents.into_iter().flatten() {
+        output.write(content)?;
+    }
+    Ok((text, said.warning()))
 }

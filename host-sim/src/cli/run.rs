@@ -217,7 +217,7 @@ impl Run {
         let page = report.as_ref().map(|_| page(&title, &[recording]));
         let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
         let pieces = || Pieces::of(&recording.results);
-        let vertices = map.as_ref().map(|_| pieces().csv("step", None)).transpose()?;
+        let vertices = map.as_ref().map(|_| pieces().csv("step", None, &[])).transpose()?;
         for (output, content) in [
             (trace, Some(lines.as_bytes())),
             (figure, svg.as_ref().map(String::as_bytes)),

@@ -8,6 +8,7 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use geographiclib_rs::{Geodesic, InverseGeodesic as _};
 use proj4rs::Proj;
 use proj4rs::transform::transform;
+use serde::{Serialize, Serializer};
 
 /// A system by its number in the EPSG registry. Its x points east and its z north.
 #[derive(Clone)]
@@ -69,6 +70,12 @@ impl fmt::Display for Crs {
 impl fmt::Debug for Crs {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
+    }
+}
+
+impl Serialize for Crs {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

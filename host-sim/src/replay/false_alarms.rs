@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::fitting::fit::Verdict;
 use crate::replay::answer::Trust;
-use crate::replay::record::Replay;
+use crate::replay::line::Replay;
 use crate::replay::rows::Layout;
 
 /// A survey of a straight line, up and down in legs or in no order. Each label is wrong with probability `q`, and

@@ -11,6 +11,7 @@ use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
 use nalgebra::Point2;
 use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
 use planner_core::{Line, Site};
+use serde::Serialize;
 
 use crate::replay::crs::Crs;
 use crate::replay::rows::Layout;
@@ -25,17 +26,18 @@ const METRES_PER_DEGREE: f64 = 111_320.0;
 /// Rows that have a middle: fewer bound no line.
 const FEWEST: usize = 3;
 
-/// How recorded positions become positions on the lattice.
-#[derive(Clone, Debug)]
-pub(crate) enum Frame {
-    /// Metres, as they are.
-    Plain,
-    /// Metres about an origin.
-    About([f64; 2]),
-    /// Latitude and longitude, degrees, about an origin.
-    Geographic { ellipsoid: Box<Geodesic>, origin: [f64; 2] },
-    /// Metres of a known system, about an origin.
-    Projected { crs: Crs, origin: [f64; 2] },
+/// How recorded positions become positions on the lattice: metres, or latitude and longitude, about an origin if they
+/// have one.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Frame {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) origin: Option<[f64; 2]>,
+    /// The coordinate system of the metres, if it is known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) crs: Option<Crs>,
+    /// Of latitude and longitude, degrees.
+    #[serde(skip)]
+    ellipsoid: Option<Geodesic>,
 }
 
 impl Frame {
@@ -45,87 +47,66 @@ impl Frame {
         is_geographic: bool,
         &Layout { origin, ref crs, .. }: &Layout,
     ) -> Result<Self> {
-        let middle = || middle(positions, REACH).map(f64::round);
-        if let Some(crs) = crs {
-            let origin = origin.unwrap_or_else(middle);
-            crs.check(origin)?;
-            return Ok(Self::Projected { crs: crs.clone(), origin });
-        }
-        if is_geographic {
-            let origin = origin.unwrap_or_else(|| geographic_middle(positions));
-            check_degrees(origin).map_err(|error| anyhow!("the origin: {error}"))?;
-            return Ok(Self::Geographic { ellipsoid: Box::new(Geodesic::wgs84()), origin });
-        }
         let is_near = |at: &[f64; 2]| Site::try_from(Point2::from(*at)).is_ok();
-        Ok(match origin {
-            Some(origin) => Self::About(origin),
-            None if positions.len() < FEWEST || positions.iter().all(is_near) => Self::Plain,
-            None => Self::About(middle()),
-        })
+        let is_plain = || positions.len() < FEWEST || positions.iter().all(is_near);
+        let origin = match origin {
+            Some(_) => origin,
+            None if is_geographic && crs.is_none() => Some(geographic_middle(positions)),
+            None if crs.is_none() && is_plain() => None,
+            None => Some(middle(positions, REACH).map(f64::round)),
+        };
+        let mut ellipsoid = None;
+        match (crs, origin) {
+            (Some(crs), Some(origin)) => crs.check(origin)?,
+            (None, Some(origin)) if is_geographic => {
+                check_degrees(origin).map_err(|error| anyhow!("the origin: {error}"))?;
+                ellipsoid = Some(Geodesic::wgs84());
+            }
+            _ => {}
+        }
+        Ok(Self { origin, crs: crs.clone(), ellipsoid })
     }
 
     /// The site of a recorded position.
     pub(crate) fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
-        let at = match self {
-            Self::Plain => [x, z],
-            Self::About([x0, z0]) | Self::Projected { origin: [x0, z0], .. } => [x - x0, z - z0],
-            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
-                let (metres, azimuth, ..): (f64, f64, f64, f64) =
-                    ellipsoid.inverse(*lat, *lon, x, z);
-                let (sin, cos) = libm::sincos(azimuth.to_radians());
-                [metres * sin, metres * cos]
-            }
+        let [x0, z0] = self.origin.unwrap_or_default();
+        let at = if let Some(ellipsoid) = &self.ellipsoid {
+            let (metres, azimuth, ..): (f64, f64, f64, f64) = ellipsoid.inverse(x0, z0, x, z);
+            let (sin, cos) = libm::sincos(azimuth.to_radians());
+            [metres * sin, metres * cos]
+        } else {
+            [x - x0, z - z0]
         };
-        Site::try_from(Point2::from(at)).map_err(|error| match self {
-            Self::Plain => anyhow!("({x}, {z}): {error}"),
-            Self::About([a, b])
-            | Self::Geographic { origin: [a, b], .. }
-            | Self::Projected { origin: [a, b], .. } => anyhow!(
-                "({x}, {z}): found {:.0} m from the origin ({a}, {b}), expected less than {REACH} m along each axis",
+        Site::try_from(Point2::from(at)).map_err(|error| match self.origin {
+            None => anyhow!("({x}, {z}): {error}"),
+            Some(_) => anyhow!(
+                "({x}, {z}): found {:.0} m from the origin ({x0}, {z0}), expected less than {REACH} m along each axis",
                 libm::hypot(at[0], at[1])
             ),
         })
     }
 
-    /// The origin, where there is one: of metres, or latitude and longitude.
-    pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
-        match self {
-            Self::Plain => None,
-            Self::About(origin)
-            | Self::Geographic { origin, .. }
-            | Self::Projected { origin, .. } => Some(*origin),
-        }
-    }
-
     pub(crate) const fn is_geographic(&self) -> bool {
-        matches!(self, Self::Geographic { .. })
+        self.ellipsoid.is_some()
     }
 
     /// A position as it would have been recorded: `x` and `z`, or latitude and longitude.
     pub(crate) fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
-        match self {
-            Self::Plain => at.into(),
-            Self::About([x, z]) | Self::Projected { origin: [x, z], .. } => [at.x + x, at.y + z],
-            Self::Geographic { ellipsoid, origin: [lat, lon] } => {
-                let azimuth = libm::atan2(at.x, at.y).to_degrees();
-                let (lat, lon): (f64, f64) =
-                    ellipsoid.direct(*lat, *lon, azimuth, libm::hypot(at.x, at.y));
-                [lat, lon].map(to_grain)
-            }
-        }
+        let [x0, z0] = self.origin.unwrap_or_default();
+        let Some(ellipsoid) = &self.ellipsoid else { return [at.x + x0, at.y + z0] };
+        let azimuth = libm::atan2(at.x, at.y).to_degrees();
+        let (lat, lon): (f64, f64) = ellipsoid.direct(x0, z0, azimuth, libm::hypot(at.x, at.y));
+        [lat, lon].map(to_grain)
     }
 
-    /// The coordinate system of the metres, if it is known.
-    pub(crate) fn crs(&self) -> Option<&Crs> {
-        match self {
-            Self::Projected { crs, .. } => Some(crs),
-            _ => None,
-        }
+    /// A position in the file's coordinates, if these are not the planner's.
+    pub(crate) fn in_file(&self, at: Point2<f64>) -> Option<[f64; 2]> {
+        self.origin.map(|_| self.recorded(at))
     }
 
     /// Whether positions have a latitude and a longitude.
     pub(crate) fn is_on_globe(&self) -> bool {
-        matches!(self, Self::Geographic { .. } | Self::Projected { .. })
+        self.is_geographic() || self.crs.is_some()
     }
 
     /// Longitude and latitude of a position.
@@ -133,12 +114,17 @@ impl Frame {
     /// # Errors
     /// Metres have none by themselves.
     pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
-        let [lat, lon] = match self {
-            Self::Geographic { .. } => self.recorded(at),
-            Self::Projected { crs, .. } => crs.degrees(self.recorded(at))?.map(to_grain),
-            Self::Plain | Self::About(_) => bail!("found metres, expected latitude and longitude"),
+        let [lat, lon] = match &self.crs {
+            _ if self.is_geographic() => self.recorded(at),
+            Some(crs) => crs.degrees(self.recorded(at))?.map(to_grain),
+            None => bail!("found metres, expected latitude and longitude"),
         };
         Ok([lon, lat])
+    }
+
+    /// A ring of positions, closed, as longitudes and latitudes.
+    pub(crate) fn ring<P: Copy + Into<Point2<f64>>>(&self, ring: &[P]) -> Result<Vec<[f64; 2]>> {
+        ring.iter().chain(ring.first()).map(|at| self.degrees((*at).into())).collect()
     }
 
     /// Whether positions lie on both sides of the 180th meridian.
@@ -153,12 +139,19 @@ impl Frame {
 
     /// A line in the file's metres; `None` where the file has none.
     pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
-        match self {
-            Self::Plain => Line::from_coefficients(a, b, c),
-            Self::About([x, z]) | Self::Projected { origin: [x, z], .. } => {
-                Line::from_coefficients(a, b, c - a * x - b * z)
-            }
-            Self::Geographic { .. } => None,
+        let [x, z] = self.origin.unwrap_or_default();
+        (!self.is_geographic()).then(|| Line::from_coefficients(a, b, c - a * x - b * z))?
+    }
+
+    /// The origin of positions, in words: a line, if there is one.
+    pub(crate) fn about(&self) -> String {
+        let of = self.crs.as_ref().map_or(String::new(), |crs| format!(" of {crs}"));
+        match self.origin {
+            None => String::new(),
+            Some([lat, lon]) if self.is_geographic() => format!(
+                "Metres to the east (x) and the north (z) of latitude {lat}, longitude {lon}.\n"
+            ),
+            Some([x, z]) => format!("Metres{of} about the origin ({x}, {z}).\n"),
         }
     }
 }

@@ -1,60 +1,13 @@
-//! The answer for a map: `GeoJSON` (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
+//! Answers for a map: `GeoJSON` (RFC 7946), whose coordinates are longitude and latitude in degrees, WGS84.
 
 use anyhow::{Context as _, Result, bail};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
 use planner_core::{Area, Sample};
 use serde_json::{Value, json};
 
-use crate::replay::record::Replay;
 use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
-
-impl Replay {
-    /// Samples, lines, and the ground to which all lines left give one label. Where labels may be wrong, these are the
-    /// lines of the credible set.
-    ///
-    /// # Errors
-    /// For a file whose positions are in metres, as these have no place on a map by themselves. Also for positions on
-    /// both sides of the 180th meridian.
-    pub fn geojson(&self) -> Result<String> {
-        let area = self.file.area_on_globe()?;
-        let mut features = Vec::new();
-        for (polygon, label) in self.answer.ground(area).into_iter().zip([1, -1]) {
-            if polygon.0.len() >= 3 {
-                let ring = polygon
-                    .0
-                    .iter()
-                    .chain(polygon.0.first())
-                    .map(|at| self.file.frame.degrees(*at));
-                let ring = ring.collect::<Result<Vec<_>>>()?;
-                let level = self.answer.doubt.as_ref().map(|doubt| doubt.probability);
-                features.push(feature(
-                    GeometryValue::new_polygon([ring]),
-                    json!({ "kind": "ground", "label": label, "probability": level.unwrap_or(1.0) }),
-                ));
-            }
-        }
-        let most_likely = self.answer.doubt.as_ref().map(|doubt| doubt.most_likely);
-        for (kind, line) in [
-            ("centre", self.answer.centre),
-            ("maximum_margin", self.answer.maximum_margin),
-            ("most_likely", most_likely),
-        ] {
-            if let Some([from, to]) = line.and_then(|line| self.ends(&line)) {
-                let ends = [self.file.frame.degrees(from)?, self.file.frame.degrees(to)?];
-                features
-                    .push(feature(GeometryValue::new_line_string(ends), json!({ "kind": kind })));
-            }
-        }
-        let disagreeing = self.answer.doubt.as_ref().map(|doubt| &doubt.disagreeing);
-        for (index, sample) in self.file.samples.iter().enumerate() {
-            let disagrees = disagreeing.map(|them| them.binary_search(&index).is_ok());
-            features.push(self.file.point(index, sample, disagrees)?);
-        }
-        Ok(collection(features))
-    }
-}
 
 impl SampleFile {
     /// The area around the samples, if it has a place on the globe.

@@ -8,32 +8,64 @@ pub mod delimiter;
 mod encoding;
 #[cfg(test)]
 mod false_alarms;
-mod figure;
 mod fills;
 mod fit_record;
 mod fit_words;
-pub mod frame;
-mod front_drawing;
-pub mod front_map;
-mod front_record;
-mod front_words;
+mod frame;
+pub mod front;
 pub mod geojson;
 pub mod geojson_file;
 pub mod gpx_file;
-mod joined_drawing;
-pub mod joined_map;
-mod joined_words;
+pub mod joined;
 pub mod label_name;
 pub mod label_words;
+pub mod line;
 mod map_file;
+mod mapped;
 pub mod missing;
 pub mod numbers;
 mod reading;
-pub mod record;
 pub mod rows;
 pub mod sample_file;
 pub mod swapped;
 pub mod table_file;
 pub mod trace_file;
 mod track;
-mod words;
+
+use anyhow::{Result, bail};
+
+/// Rows, pieces and alarms that are named in words; the record has all.
+const MOST_NAMED: usize = 20;
+
+/// What a command says of its files: the same facts in each form.
+pub trait Report {
+    /// For people.
+    fn words(&self) -> String;
+
+    /// For programs.
+    fn json(&self) -> String;
+
+    /// As an SVG document.
+    ///
+    /// # Errors
+    /// When it could not be drawn.
+    fn figure(&self) -> Result<String>;
+
+    /// For a map.
+    ///
+    /// # Errors
+    /// For positions in metres, as these have no place on a map by themselves. Also for positions on both sides of the
+    /// 180th meridian.
+    fn geojson(&self) -> Result<String>;
+
+    /// The vertices of a front.
+    ///
+    /// # Errors
+    /// When a row could not be written.
+    fn csv(&self) -> Result<String> {
+        bail!("found a line, expected a front")
+    }
+
+    /// Why not to rely on it.
+    fn warning(&self) -> Option<String>;
+}

@@ -2,6 +2,7 @@
 
 use anyhow::{Result, bail};
 use planner_core::Label;
+use serde::Serialize;
 use serde_json::{Map, Value};
 
 use crate::mission::results::{Name, Start, StepResult};
@@ -68,11 +69,16 @@ impl Unit {
 pub(crate) type Told = Map<String, Value>;
 
 /// Rows without a value, which are no samples.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Serialize)]
 pub(crate) struct Skipped {
+    #[serde(rename = "rows")]
     pub(crate) count: usize,
-    /// The place of the first, and what it lacks.
-    pub(crate) first: Option<(usize, String)>,
+    /// The line of the first, or its feature.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) first: Option<usize>,
+    /// What the first lacks.
+    #[serde(skip)]
+    pub(crate) lacks: String,
 }
 
 /// Rows as they were recorded.
@@ -120,10 +126,12 @@ impl Rows {
         self.lines.push(line);
     }
 
-    /// Counts a row of units or of titles, which is no sample in a strict file either.
+    /// Counts a row that is no sample in a strict file either, such as one of units or of titles.
     pub(crate) fn heading(&mut self, line: usize, what: &str) {
         self.skipped.count += 1;
-        self.skipped.first.get_or_insert_with(|| (line, what.to_owned()));
+        if self.skipped.first.is_none() {
+            (self.skipped.first, self.skipped.lacks) = (Some(line), what.to_owned());
+        }
     }
 
     /// Takes measured rows away, each if it is said of it.
@@ -147,8 +155,7 @@ impl Rows {
         if layout.strict {
             bail!("{lacks}, expected a value in each {}, as --strict says", self.unit.row());
         }
-        self.skipped.count += 1;
-        self.skipped.first.get_or_insert((line, lacks));
+        self.heading(line, &lacks);
         Ok(())
     }
 }

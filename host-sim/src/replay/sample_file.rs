@@ -80,8 +80,10 @@ impl SampleFile {
     fn of(name: &str, rows: Rows, layout: &Layout) -> Result<Self> {
         let unit = rows.unit;
         let at = |index: usize| unit.place(name, rows.lines[index]);
-        if let (true, Some((line, lacks))) = (rows.positions.is_empty(), &rows.skipped.first) {
-            let (count, row) = (rows.skipped.count, unit.row());
+        if let (true, Skipped { count, first: Some(line), lacks }) =
+            (rows.positions.is_empty(), &rows.skipped)
+        {
+            let row = unit.row();
             bail!(
                 "{name}: all {count} {row}s lack a position or a label, expected samples; on {} {line}: {lacks}",
                 unit.name()
@@ -141,6 +143,34 @@ impl SampleFile {
     /// The line on which a sample begins, or the number of its feature.
     pub(crate) fn line(&self, index: usize) -> usize {
         self.lines[index]
+    }
+
+    /// What a report begins with: the headline, the rows that are no samples, a value far outside all others, rows out of
+    /// the order of their times, and the origin of positions, a line each, if there are such.
+    pub(crate) fn beginning(&self, headline: &str) -> String {
+        let (Skipped { count, first, lacks }, unit) = (&self.skipped, self.unit);
+        let (row, name) = (unit.row(), unit.name());
+        let s = if *count == 1 { "" } else { "s" };
+        let skipped = first.map(|line| {
+            format!(
+                "Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n"
+            )
+        });
+        let odd = self.odd.map(|(line, value, [least, most])| {
+            format!(
+                "On {name} {line} stands {value}, all other values are from {least} to {most}: leave such rows out if that is no value.\n"
+            )
+        });
+        let backwards = self.backwards.map(|(count, line)| {
+            let rows = if count == 1 { "row is" } else { "rows are" };
+            format!(
+                "{count} {rows} of an earlier time than the row before, the first on {name} {line}: rows count in the order of \
+                 the file. Sort them by time if it matters.\n"
+            )
+        });
+        let [skipped, odd, backwards] = [skipped, odd, backwards].map(Option::unwrap_or_default);
+        let about = self.frame.about();
+        format!("{}: {headline}.\n{skipped}{odd}{backwards}{about}", self.name)
     }
 
     /// What else its row says.

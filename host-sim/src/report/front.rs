@@ -70,12 +70,8 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         ),
         _ => format!("The front was found at {unit} {found}, and is known in the end.\n"),
     };
-    let places = if vertices == 1 { "place" } else { "places" };
     // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "The map has {vertices} {places} along {metres:.1} m of front; {driven:.1} m were driven for it."
-    );
+    let _ = writeln!(text, "{}; {driven:.1} m were driven for it.", extent(vertices, metres));
     if record.gaps > UNMAPPED * metres {
         let MapRecord { pieces, gaps, .. } = record;
         let _ = match pieces {
@@ -86,12 +82,7 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
             ),
         };
     }
-    if let Some([median, most]) = half_width {
-        let _ = writeln!(
-            text,
-            "With probability 0.9 the front lies within {median:.2} m of such a place (median; {most:.2} m at most)."
-        );
-    }
+    text.extend(half_width.map(within));
     if let Some(OffRecord { median, most, covered }) = off {
         let percent = 100.0 * covered;
         let _ = writeln!(
@@ -100,6 +91,19 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         );
     }
     text
+}
+
+/// How far a map goes, at the beginning of a sentence.
+pub(crate) fn extent(vertices: usize, metres: f64) -> String {
+    let places = if vertices == 1 { "place" } else { "places" };
+    format!("The map has {vertices} {places} along {metres:.1} m of front")
+}
+
+/// How near the front is to the places of a map: a sentence.
+pub(crate) fn within([median, most]: [f64; 2]) -> String {
+    format!(
+        "With probability 0.9 the front lies within {median:.2} m of such a place (median; {most:.2} m at most).\n"
+    )
 }
 
 /// What to change if a front was not found, or is lost.

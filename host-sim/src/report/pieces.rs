@@ -16,7 +16,7 @@ pub struct Pieces(pub(crate) Vec<Vec<(usize, VertexRecord)>>);
 pub(crate) const ROBOT: &str = "robot";
 
 /// More columns of a map file: their titles, and what a vertex has there.
-pub(crate) type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);
+pub type Own<'a> = ([&'static str; 2], &'a dyn Fn(&VertexRecord) -> [f64; 2]);
 
 impl Pieces {
     /// Those of a mission.
@@ -49,13 +49,6 @@ impl Pieces {
         self
     }
 
-    /// A closed front, whose only piece ends where it begins.
-    pub(crate) fn closed(mut self) -> Self {
-        let begin = self.0.first().and_then(|piece| piece.first()).copied();
-        self.0.iter_mut().take(1).for_each(|piece| piece.extend(begin));
-        self
-    }
-
     /// All vertices, each with the number of its piece, from 1, and that of its step or row.
     pub(crate) fn vertices(&self) -> impl Iterator<Item = (usize, usize, &VertexRecord)> {
         let numbered = (1..).zip(&self.0);
@@ -63,24 +56,11 @@ impl Pieces {
     }
 
     /// A map file: a row for each vertex, under a header. `number` is the title of the first column, and `own` are
-    /// columns at the end.
+    /// columns at the end. So is whose each vertex is, if several robots made the map.
     ///
     /// # Errors
     /// When a row could not be written.
-    pub fn csv(&self, number: &str, own: Option<Own<'_>>) -> Result<String> {
-        self.csv_of(number, own, &[])
-    }
-
-    /// The same with whose each vertex is, if several robots made the map.
-    ///
-    /// # Errors
-    /// When a row could not be written.
-    pub(crate) fn csv_of(
-        &self,
-        number: &str,
-        own: Option<Own<'_>>,
-        robots: &[usize],
-    ) -> Result<String> {
+    pub fn csv(&self, number: &str, own: Option<Own<'_>>, robots: &[usize]) -> Result<String> {
         const TITLES: [&str; 7] =
             ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -105,12 +85,6 @@ pub(crate) fn ends(vertex: &VertexRecord) -> [Point2<f64>; 2] {
     [vertex.at() + left, vertex.at() - left]
 }
 
-impl From<Vec<Vec<(usize, VertexRecord)>>> for Pieces {
-    fn from(pieces: Vec<Vec<(usize, VertexRecord)>>) -> Self {
-        Self(pieces)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -129,7 +103,7 @@ mod tests {
             let vertices = is_known.then(|| here(vertex(k as f64))).into_iter().collect();
             Mapped { number: k + 1, metres: k as f64, is_known, vertices }
         };
-        pieces(&known.bytes().enumerate().map(step).collect::<Vec<_>>()).into()
+        Pieces(pieces(&known.bytes().enumerate().map(step).collect::<Vec<_>>()))
     }
 
     #[test]
@@ -148,7 +122,7 @@ mod tests {
 
     #[test]
     fn a_map_file_has_a_row_for_each_vertex() {
-        let file = map("#.#").csv("step", None).unwrap();
+        let file = map("#.#").csv("step", None, &[]).unwrap();
         assert_eq!(
             file,
             "step,x,z,heading,curvature,half_width,turn_deviation,piece\n\
@@ -156,9 +130,9 @@ mod tests {
              3,2.0,2.0,-0.5,0.0,0.75,0.25,2\n"
         );
         let degrees = |it: &VertexRecord| [it.x + 50.0, 10.0];
-        let file = map("#").csv("row", Some((["lat", "lon"], &degrees))).unwrap();
+        let file = map("#").csv("row", Some((["lat", "lon"], &degrees)), &[]).unwrap();
         assert!(file.ends_with(",piece,lat,lon\n1,0.0,2.0,-0.5,0.0,0.75,0.25,1,50.0,10.0\n"));
         // A map without vertices is a header alone.
-        assert_eq!(map("..").csv("row", None).unwrap().lines().count(), 1);
+        assert_eq!(map("..").csv("row", None, &[]).unwrap().lines().count(), 1);
     }
 }

@@ -576,13 +576,20 @@ impl FitRecord {
     pub fn beside(Fit { line, misclassified }: Fit, estimates: &EstimateRecords) -> Self {
         let line = LineRecord::from(line);
         let LineRecord { slope, intercept, angle, .. } = line;
-        let share = |it: Option<LineRecord>| it?.error.map(|error| error.misclassified);
-        let estimates = EstimateRecords {
-            bisector: share(estimates.bisector),
-            centre: share(estimates.centre),
-            maximum_margin: share(estimates.maximum_margin),
-        };
+        let estimates = estimates.and_then(|it| it.error.map(|error| error.misclassified));
         Self { slope, intercept, angle, misclassified, estimates, line }
+    }
+}
+
+impl<L> EstimateRecords<L> {
+    /// The same of each estimate.
+    pub fn and_then<M>(self, of: impl Fn(L) -> Option<M>) -> EstimateRecords<M> {
+        let Self { bisector, centre, maximum_margin } = self;
+        EstimateRecords {
+            bisector: bisector.and_then(&of),
+            centre: centre.and_then(&of),
+            maximum_margin: maximum_margin.and_then(&of),
+        }
     }
 }
 
