@@ -18,10 +18,10 @@ use crate::replay::Report;
 use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
-use crate::replay::delimiter::Delimiter;
 use crate::replay::front::FrontMap;
 use crate::replay::line::Replay;
 use crate::replay::rows::Layout;
+use crate::replay::table_file;
 use crate::world::errors::Errors;
 
 #[derive(Debug, Args)]
@@ -35,8 +35,8 @@ pub(crate) struct ReplayArgs {
     #[arg(long, value_name = "LIST", value_parser = Columns::from_str)]
     pub(crate) columns: Option<Columns>,
     /// The delimiter between columns, if it is not clear: comma, semicolon, tab, pipe, space
-    #[arg(long, value_name = "NAME", value_parser = Delimiter::from_str)]
-    pub(crate) delimiter: Option<Delimiter>,
+    #[arg(long, value_name = "NAME", value_parser = table_file::delimiter)]
+    pub(crate) delimiter: Option<u8>,
     /// Labels are measured values: above this they are +1, else -1
     #[arg(long, value_name = "V", value_parser = threshold)]
     pub(crate) threshold: Option<f64>,

@@ -78,7 +78,7 @@ impl Answer {
     /// # Errors
     /// Names the file, and the line where a row is the reason.
     pub(crate) fn of(file: &SampleFile, trust: Trust) -> Result<Self> {
-        let p = trust.p.or(file.p).unwrap_or(1.0);
+        let p = trust.p.or(file.rows.p).unwrap_or(1.0);
         let tolerance = (trust.tolerance > 0.0).then_some(trust.tolerance);
         match tolerance {
             _ if p < 1.0 => doubted(file, p, tolerance),
@@ -267,7 +267,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
 /// How well the most likely line explains the labels that may be wrong.
 fn fit(file: &SampleFile, line: &Line, p: f64, tolerance: f64) -> Fit {
     let mut is_certain = vec![false; file.samples.len()];
-    for &index in &file.certain {
+    for &index in &file.rows.certain {
         is_certain[index] = true;
     }
     let rows: Vec<_> = (0..file.samples.len()).filter(|index| !is_certain[*index]).collect();
@@ -308,7 +308,7 @@ fn posterior(
     (middle, reach): (Point2<f64>, Vector2<f64>),
 ) -> Result<LinePosterior> {
     let name = &file.name;
-    let votes = Votes::of(&file.samples, &file.certain, middle).map_err(|index| {
+    let votes = Votes::of(&file.samples, &file.rows.certain, middle).map_err(|index| {
         anyhow!("{}: found a certain label, and another at the same place", file.place(index))
     })?;
     LinePosterior::of(&votes, &Doubt::new(p, tolerance), reach).map_err(|why| match why {

@@ -2,44 +2,25 @@
 
 use std::str::FromStr;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context as _, Error, Result, anyhow, bail};
 
-/// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Role {
-    X,
-    Z,
-    Latitude,
-    Longitude,
-    Label,
-}
+/// What a column holds, as `--columns` and errors name it. Positions are of one kind or the other.
+type Role = &'static str;
+const METRES: [Role; 2] = ["x", "z"];
+const DEGREES: [Role; 2] = ["lat", "lon"];
+const LABEL: Role = "label";
 
-impl Role {
-    const ALL: [Self; 5] = [Self::X, Self::Z, Self::Latitude, Self::Longitude, Self::Label];
-
-    /// What it is called in `--columns` and in errors.
-    const fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Z => "z",
-            Self::Latitude => "lat",
-            Self::Longitude => "lon",
-            Self::Label => "label",
-        }
-    }
-
-    /// Whether a title says this by itself, with a unit behind it or without.
-    fn is_usual(self, title: &str) -> bool {
-        let title = match title.split_once(['(', '[']) {
-            Some((title, unit)) if unit.ends_with([')', ']']) => title.trim_end(),
-            _ => title,
-        };
-        let is_one_of = |names: &[&str]| names.iter().any(|name| title.eq_ignore_ascii_case(name));
-        match self {
-            Self::Latitude => is_one_of(&["lat", "latitude"]),
-            Self::Longitude => is_one_of(&["lon", "lng", "long", "longitude"]),
-            Self::X | Self::Z | Self::Label => title == self.name(),
-        }
+/// Whether a title says by itself what its column holds, with a unit behind it or without.
+fn is_usual(role: Role, title: &str) -> bool {
+    let title = match title.split_once(['(', '[']) {
+        Some((title, unit)) if unit.ends_with([')', ']']) => title.trim_end(),
+        _ => title,
+    };
+    let is_one_of = |names: &[&str]| names.iter().any(|name| title.eq_ignore_ascii_case(name));
+    match role {
+        "lat" => is_one_of(&["lat", "latitude"]),
+        "lon" => is_one_of(&["lon", "lng", "long", "longitude"]),
+        _ => title == role,
     }
 }
 
@@ -50,30 +31,28 @@ pub struct Columns {
 }
 
 impl FromStr for Columns {
-    type Err = anyhow::Error;
+    type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
         const EXPECTED: &str = "expected x=TITLE,z=TITLE,label=TITLE or lat=TITLE,lon=TITLE,label=TITLE, \
                                  a title or a number from 1 each";
         let mut named: Vec<(Role, String)> = Vec::new();
         for part in text.split(',') {
-            let Some((role, title)) = part.split_once('=') else {
-                bail!("found {part:?}, {EXPECTED}");
-            };
-            let (role, title) = (role.trim(), title.trim());
-            let Some(role) = Role::ALL.into_iter().find(|known| known.name() == role) else {
-                bail!("found the name {role:?}, {EXPECTED}");
-            };
+            let parted = part.split_once('=');
+            let (name, title) = parted.with_context(|| format!("found {part:?}, {EXPECTED}"))?;
+            let (name, title) = (name.trim(), title.trim());
+            let role = METRES.into_iter().chain(DEGREES).chain([LABEL]).find(|it| *it == name);
+            let role = role.with_context(|| format!("found the name {name:?}, {EXPECTED}"))?;
             if title.is_empty() {
-                bail!("found no title for {}, {EXPECTED}", role.name());
+                bail!("found no title for {role}, {EXPECTED}");
             }
             if named.iter().any(|(other, _)| *other == role) {
-                bail!("found {} twice, {EXPECTED}", role.name());
+                bail!("found {role} twice, {EXPECTED}");
             }
             named.push((role, title.to_owned()));
         }
         let has = |roles: [Role; 2]| named.iter().any(|(role, _)| roles.contains(role));
-        if has([Role::X, Role::Z]) && has([Role::Latitude, Role::Longitude]) {
+        if has(METRES) && has(DEGREES) {
             bail!("found both kinds of positions, {EXPECTED}");
         }
         Ok(Self { named })
@@ -83,35 +62,35 @@ impl FromStr for Columns {
 /// Where a file has positions and labels.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Places {
-    /// Of `x` and `z`, or of latitude and longitude.
-    pub(crate) position: [usize; 2],
-    pub(crate) label: usize,
-    /// Whether positions are latitudes and longitudes, degrees.
-    pub(crate) is_geographic: bool,
+    /// Of `x` and `z`, or of latitude and longitude; then of the label.
+    pub(crate) columns: [usize; 3],
+    /// What these are called.
+    pub(crate) names: [Role; 3],
     /// Whether the first row has titles.
     pub(crate) has_header: bool,
 }
 
 impl Places {
-    /// What positions are called.
-    pub(crate) fn names(self) -> [&'static str; 2] {
-        roles(self.is_geographic).map(Role::name)
+    /// The columns of positions.
+    pub(crate) fn position(self) -> [usize; 2] {
+        [self.columns[0], self.columns[1]]
     }
-}
 
-const fn roles(is_geographic: bool) -> [Role; 2] {
-    if is_geographic { [Role::Latitude, Role::Longitude] } else { [Role::X, Role::Z] }
+    /// Whether positions are latitudes and longitudes, degrees.
+    pub(crate) fn is_geographic(self) -> bool {
+        DEGREES.contains(&self.names[0])
+    }
 }
 
 impl Columns {
     /// The name of the label's column, if it is given.
     pub(crate) fn label(&self) -> Option<&str> {
-        self.title(Role::Label)
+        self.title(LABEL)
     }
 
     /// Whether columns of positions are named.
     pub(crate) fn name_positions(&self) -> bool {
-        self.named.iter().any(|(role, _)| *role != Role::Label)
+        self.named.iter().any(|(role, _)| *role != LABEL)
     }
 
     fn title(&self, role: Role) -> Option<&str> {
@@ -130,43 +109,44 @@ impl Columns {
         is_value: impl Fn(&str) -> bool,
     ) -> Result<Places> {
         let titles: Vec<_> = first.iter().map(|it| it.trim()).collect();
-        let is_geographic = self.is_geographic(&titles);
-        let [first, second] = roles(is_geographic);
-        let wanted = [first, second, Role::Label];
-        let expected = wanted.map(Role::name).join(",");
-        let mut places = [0; 3];
+        let [one, other] = self.kind(&titles);
+        let names = [one, other, LABEL];
+        let expected = names.join(",");
+        let mut columns = [0; 3];
         let mut all_by_number = true;
-        for (role, place) in wanted.into_iter().zip(&mut places) {
+        for (role, column) in names.into_iter().zip(&mut columns) {
             let (found, by_number) = self.place(at, role, &titles, &expected)?;
             if !by_number && titles[found + 1..].contains(&titles[found]) {
                 let title = titles[found];
                 bail!("{at}: found the column {title} twice, expected each of {expected} once");
             }
-            *place = found;
+            *column = found;
             all_by_number &= by_number;
         }
-        let [a, b, label] = places;
+        let [a, b, label] = columns;
         if a == b || a == label || b == label {
             bail!(
                 "--columns: found one column for two of {expected} at {at}, expected a column for each"
             );
         }
         // Without a header, what stands in the columns is not a title.
-        let has_header = !(all_by_number && [a, b].iter().any(|place| is_value(titles[*place])));
-        if !has_header && let Some(bad) = [a, b].into_iter().find(|place| !is_value(titles[*place]))
-        {
+        let no_value = [a, b].into_iter().find(|place| !is_value(titles[*place]));
+        let has_header = !all_by_number || [a, b].iter().all(|place| !is_value(titles[*place]));
+        if let (false, Some(bad)) = (has_header, no_value) {
             bail!("{at}: found {:?}, expected a finite number in column {}", titles[bad], bad + 1);
         }
-        Ok(Places { position: [a, b], label, is_geographic, has_header })
+        Ok(Places { columns, names, has_header })
     }
 
-    fn is_geographic(&self, titles: &[&str]) -> bool {
-        let has = |role: Role| titles.iter().any(|title| role.is_usual(title));
-        let kinds = self.named.iter().filter(|(role, _)| *role != Role::Label);
-        match kinds.map(|(role, _)| matches!(role, Role::Latitude | Role::Longitude)).next() {
-            Some(named) => named,
-            None => !(has(Role::X) && has(Role::Z)) && has(Role::Latitude) && has(Role::Longitude),
-        }
+    /// The kind of positions: the one that is named, or else the one that the titles have.
+    fn kind(&self, titles: &[&str]) -> [Role; 2] {
+        let has = |role: Role| titles.iter().any(|title| is_usual(role, title));
+        let named = self.named.iter().find(|(role, _)| *role != LABEL);
+        let is_geographic = match named {
+            Some((role, _)) => DEGREES.contains(role),
+            None => !METRES.into_iter().all(has) && DEGREES.into_iter().all(has),
+        };
+        if is_geographic { DEGREES } else { METRES }
     }
 
     /// The column of a role, and whether it is known by its number alone.
@@ -179,61 +159,53 @@ impl Columns {
     ) -> Result<(usize, bool)> {
         let header = || titles.join(",");
         let Some(title) = self.title(role) else {
-            let place = titles.iter().position(|title| role.is_usual(title));
-            let place = place.ok_or_else(|| {
-                let found = match titles {
-                    [one] if !one.is_empty() => format!("the one column {one:?}"),
-                    _ => format!("the header {:?}", header()),
-                };
-                // Positions may as well be of the other kind, unless one of this kind is named.
-                let either = if self.name_positions() || role == Role::Label {
-                    expected.to_owned()
-                } else {
-                    format!("{expected}, or lat,lon,label")
-                };
-                anyhow!(
-                    "{at}: found {found}, expected {either}; other columns are named by {}",
-                    self.example(role)
-                )
-            })?;
-            if let Some(again) = titles[place + 1..].iter().find(|title| role.is_usual(title)) {
+            let mut usual = (0..titles.len()).filter(|it| is_usual(role, titles[*it]));
+            let Some(place) = usual.next() else {
+                return Err(self.missing(at, role, titles, expected));
+            };
+            if let Some(again) = usual.next() {
+                let again = titles[again];
                 bail!("{at}: found the column {again} twice, expected each of {expected} once");
             }
             return Ok((place, false));
         };
-        if let Some(place) = titles.iter().position(|other| *other == title) {
-            // A number may be what stands there, in a file without titles.
-            if title.parse::<f64>().is_err() {
-                return Ok((place, false));
-            }
+        // A number may be what stands there, in a file without titles.
+        let place = titles.iter().position(|other| *other == title);
+        if let (Some(place), Err(_)) = (place, title.parse::<f64>()) {
+            return Ok((place, false));
         }
         let number = title.parse::<usize>().ok().filter(|n| (1..=titles.len()).contains(n));
-        let place = number.ok_or_else(|| {
-            let (count, role) = (titles.len(), role.name());
-            anyhow!(
+        let number = number.with_context(|| {
+            let count = titles.len();
+            format!(
                 "--columns {role}={title}: found the columns {:?} at {at}, expected {title:?} among them for {role}, or a number up to {count}",
                 header()
             )
         })?;
-        Ok((place - 1, true))
+        Ok((number - 1, true))
     }
 
-    /// How one names the columns of a file that has other titles.
-    fn example(&self, role: Role) -> String {
-        let named = self.named.iter().map(|(role, title)| format!("{}={title}", role.name()));
-        let named: Vec<_> = named.collect();
-        match role {
-            Role::Label => "--columns label=TITLE".to_owned(),
+    /// No column has the title of a role; and how one names the columns of such a file.
+    fn missing(&self, at: &str, role: Role, titles: &[&str], expected: &str) -> Error {
+        let found = match titles {
+            [one] if !one.is_empty() => format!("the one column {one:?}"),
+            _ => format!("the header {:?}", titles.join(",")),
+        };
+        let named = self.named.iter().map(|(role, title)| format!("{role}={title}"));
+        let named = named.collect::<Vec<_>>().join(",");
+        // Positions may as well be of the other kind, unless one of this kind is named.
+        let is_open = role != LABEL && !self.name_positions();
+        let either = if is_open { ", or lat,lon,label" } else { "" };
+        let example = match role {
+            LABEL => "label=TITLE".to_owned(),
             _ if named.is_empty() => {
-                "--columns lat=TITLE,lon=TITLE,label=TITLE, or x=...,z=...,label=...".to_owned()
+                "lat=TITLE,lon=TITLE,label=TITLE, or x=...,z=...,label=...".to_owned()
             }
-            _ if self.name_positions() => {
-                format!("--columns {},{}=TITLE", named.join(","), role.name())
-            }
-            _ => {
-                let named = named.join(",");
-                format!("--columns lat=TITLE,lon=TITLE,{named} or x=TITLE,z=TITLE,{named}")
-            }
-        }
+            _ if is_open => format!("lat=TITLE,lon=TITLE,{named} or x=TITLE,z=TITLE,{named}"),
+            _ => format!("{named},{role}=TITLE"),
+        };
+        anyhow!(
+            "{at}: found {found}, expected {expected}{either}; other columns are named by --columns {example}"
+        )
     }
 }

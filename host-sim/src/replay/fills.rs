@@ -1,6 +1,9 @@
 //! Numbers that stand in a file where nothing was measured, and values and positions that look like such.
 
+use anyhow::{Error, Result};
+
 use crate::replay::rows::{Layout, Rows};
+use crate::world::extent::span;
 
 /// The usual ones, as loggers, GIS and servers write them.
 const USUAL: [f64; 22] = [
@@ -19,11 +22,6 @@ fn is_usual(value: f64) -> bool {
     USUAL.contains(&value) || value.abs() >= HUGE
 }
 
-/// The least and the most of some values; the first exceeds the second if there are none.
-fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
-    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], it| [a.min(it), b.max(it)])
-}
-
 /// How many of their ranges a value is away from others.
 fn ranges_away(value: f64, [least, most]: [f64; 2]) -> f64 {
     let away = (least - value).max(value - most);
@@ -36,24 +34,15 @@ impl Rows {
     ///
     /// # Errors
     /// The row, where the layout is strict.
-    pub(crate) fn leave_out_unfixed(
-        &mut self,
-        layout: &Layout,
-    ) -> Result<(), (usize, anyhow::Error)> {
+    pub(crate) fn leave_out_unfixed(&mut self, layout: &Layout) -> Result<(), (usize, Error)> {
         let is_far = |at: &&[f64; 2]| at.iter().any(|it| it.abs() > 1.0);
         let far = self.positions.iter().filter(is_far).count();
         if !self.is_geographic || 2 * far < self.positions.len() {
             return Ok(());
         }
-        let unfixed: Vec<_> =
-            self.positions.iter().map(|at| at.iter().all(|it| *it == 0.0)).collect();
-        for (index, _) in unfixed.iter().enumerate().filter(|it| *it.1) {
-            let (line, lacks) =
-                (self.lines[index], "found (0, 0), where receivers are before their first fix");
-            self.skip(layout, line, lacks.to_owned()).map_err(|error| (line, error))?;
-        }
-        self.leave_out(&unfixed);
-        Ok(())
+        let lacks = "found (0, 0), where receivers are before their first fix";
+        let unfixed = |at: &[f64; 2]| (*at == [0.0; 2]).then(|| lacks.to_owned());
+        self.leave_out(layout, self.positions.iter().map(unfixed).collect())
     }
 
     /// Leaves out the rows whose measured value is a usual fill value and lies outside all others, by more than their
@@ -61,34 +50,48 @@ impl Rows {
     ///
     /// # Errors
     /// The row and its value, where the layout is strict.
-    pub(crate) fn leave_out_fills(
-        &mut self,
-        layout: &Layout,
-    ) -> Result<(), (usize, anyhow::Error)> {
-        let rest = range(self.values.iter().copied().filter(|it| !is_usual(*it)));
+    pub(crate) fn leave_out_fills(&mut self, layout: &Layout) -> Result<(), (usize, Error)> {
+        let rest = span(self.values.iter().copied().filter(|it| !is_usual(*it)));
         let is_outside = |value: f64| rest[0] > rest[1] || ranges_away(value, rest) > 1.0;
-        let is_fill = |value: f64| is_usual(value) && is_outside(value);
-        let fills: Vec<_> = self.values.iter().map(|it| is_fill(*it)).collect();
-        for (index, _) in fills.iter().enumerate().filter(|it| *it.1) {
-            let (value, line) = (self.values[index], self.lines[index]);
-            let lacks = format!("label: found {value}, which stands for no value");
-            self.skip(layout, line, lacks).map_err(|error| (line, error))?;
-        }
-        self.leave_out(&fills);
-        let [least, most] = range(self.values.iter().copied());
-        for extreme in [least, most] {
-            let others =
-                range(self.values.iter().copied().filter(|it| it.total_cmp(&extreme).is_ne()));
+        let fill = |value: &f64| {
+            (is_usual(*value) && is_outside(*value))
+                .then(|| format!("label: found {value}, which stands for no value"))
+        };
+        self.leave_out(layout, self.values.iter().map(fill).collect())?;
+        for extreme in span(self.values.iter().copied()) {
+            let is_it = |value: &f64| value.total_cmp(&extreme).is_eq();
+            let others = span(self.values.iter().copied().filter(|it| !is_it(it)));
             let away = ranges_away(extreme, others);
             if away > FAR && away.is_finite() {
-                let line = self
-                    .values
-                    .iter()
-                    .position(|it| it.total_cmp(&extreme).is_eq())
-                    .map(|it| self.lines[it]);
-                self.odd = line.map(|line| (line, extreme, others)).or(self.odd);
+                let first = self.values.iter().position(is_it);
+                self.odd = first.map(|it| (self.lines[it], extreme, others)).or(self.odd);
             }
         }
+        Ok(())
+    }
+
+    /// Leaves rows out, each if something is said that it lacks.
+    fn leave_out(
+        &mut self,
+        layout: &Layout,
+        lacks: Vec<Option<String>>,
+    ) -> Result<(), (usize, Error)> {
+        fn kept<T>(of: &mut Vec<T>, is_left: &[bool]) {
+            let mut is_left = is_left.iter();
+            of.retain(|_| is_left.next() != Some(&true));
+        }
+        let is_left: Vec<_> = lacks.iter().map(Option::is_some).collect();
+        for (index, lacks) in lacks.into_iter().enumerate() {
+            let line = self.lines[index];
+            lacks
+                .map_or(Ok(()), |it| self.skip(layout, line, it))
+                .map_err(|error| (line, error))?;
+        }
+        kept(&mut self.positions, &is_left);
+        kept(&mut self.labels, &is_left);
+        kept(&mut self.values, &is_left);
+        kept(&mut self.lines, &is_left);
+        kept(&mut self.told, &is_left);
         Ok(())
     }
 }

@@ -79,15 +79,16 @@ impl FrontMap {
     /// Names the file and the line, what was found and what was expected.
     pub fn read(path: &Path, layout: &Layout, front: Front, trust: Trust) -> Result<Self> {
         let file = SampleFile::read(path, layout)?;
-        let RecordedTrack { rows, mut known, width, p, is_closed } =
-            RecordedTrack::of(&file, front, trust)?;
-        let bar = progress(rows.len() as u64, "rows")?;
-        let (mut alarms, mut after) = (Vec::new(), Vec::with_capacity(rows.len()));
-        for (k, row) in rows.iter().enumerate() {
-            if known.take(row)? {
-                alarms.push(row.number);
+        let mut track = RecordedTrack::of(&file, front, trust)?;
+        let count = track.rows.len();
+        let bar = progress(count as u64, "rows")?;
+        let (mut alarms, mut after) = (Vec::new(), Vec::with_capacity(count));
+        for k in 0..count {
+            let (number, metres) = (track.rows[k].number, track.rows[k].driven);
+            if track.take(k)? {
+                alarms.push(number);
             }
-            let (number, metres) = (row.number, row.driven);
+            let known = &track.known;
             let passed = |it| PassedRecord::of(it, number);
             let vertices = known.curve().mapped().iter().copied().map(passed).collect();
             let is_known = known.is_found();
@@ -97,13 +98,14 @@ impl FrontMap {
             }
         }
         bar.finish_and_clear();
+        let RecordedTrack { known, width, p, is_closed, .. } = track;
         if let Some(last) = after.last_mut() {
             let passed = |it| PassedRecord::of(it, last.number);
             last.vertices.extend(rest(known.curve()).into_iter().map(passed));
         }
         let map = MapRecord::after(&after, is_closed);
         let one_label = known.one_label().map(|it| it.label).or_else(|| one_label(&file.samples));
-        let numbers = if file.mission.is_some() { "step" } else { "row" };
+        let numbers = if file.rows.mission.is_some() { "step" } else { "row" };
         let facts = Facts {
             front: front.into(),
             p,
@@ -121,7 +123,7 @@ impl FrontMap {
 
     /// What numbers the rows of the track, in words.
     fn unit(&self) -> &'static str {
-        if self.file.mission.is_some() { "step" } else { self.file.unit.name() }
+        if self.file.rows.mission.is_some() { "step" } else { self.file.unit.name() }
     }
 
     fn headline(&self) -> String {
@@ -194,7 +196,7 @@ impl Report for FrontMap {
     fn json(&self) -> String {
         file::json(&Record {
             samples: self.file.samples.len(),
-            skipped: &self.file.skipped,
+            skipped: &self.file.rows.skipped,
             facts: &self.facts,
             frame: &self.file.frame,
             vertices: self.mapped.vertices(),

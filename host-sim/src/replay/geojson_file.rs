@@ -8,9 +8,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Deserializer, Error, Value};
 
-use crate::replay::label_name::LabelName;
-use crate::replay::missing::is_missing;
-use crate::replay::reading::{Reading, Row};
+use crate::replay::reading::{Reading, Row, is_missing};
 use crate::replay::rows::{Layout, Rows, Unit};
 
 /// The keys that tell `GeoJSON` from a trace.
@@ -40,7 +38,7 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
 
 fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     let (name, layout) = (reading.name, reading.layout);
-    let mut label = LabelName::of(name, "GeoJSON", layout)?;
+    let wanted = reading.label("GeoJSON")?;
     let parsed =
         serde_json::from_slice(text).or_else(|_| serde_json::from_slice(&with_nulls(text)));
     let mut file: Value = parsed
@@ -55,18 +53,20 @@ fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     };
     reading.rows =
         Rows { is_geographic: layout.crs.is_none(), unit: Unit::Feature, ..Rows::default() };
-    for (number, feature) in (1..).zip(features) {
-        reading.row(number, |reading| read(reading, &mut label, feature, number))?;
+    if let Some(first) = features.first()
+        && features.iter().all(|it| it["properties"].get(wanted).is_none())
+    {
+        let others = first["properties"].as_object();
+        let others: Vec<_> = others.into_iter().flat_map(|it| it.keys().cloned()).collect();
+        return Err(reading.no_label(wanted, 1, &others));
     }
-    label.end(|number| Unit::Feature.place(name, number))
+    for (number, feature) in (1..).zip(features) {
+        reading.row(number, |reading| read(reading, wanted, feature, number))?;
+    }
+    Ok(())
 }
 
-fn read(
-    reading: &mut Reading,
-    label: &mut LabelName,
-    feature: Value,
-    number: usize,
-) -> Result<Row> {
+fn read(reading: &mut Reading, wanted: &str, feature: Value, number: usize) -> Result<Row> {
     let feature: Feature = serde_json::from_value(feature)
         .map_err(|error| anyhow!("expected a feature of GeoJSON: {error}"))?;
     let points = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
@@ -77,17 +77,14 @@ fn read(
         }
         None => return Ok(Row::Gap("found no geometry".to_owned())),
     };
-    let value = feature.property(label.wanted);
-    let all = || feature.properties.iter().flat_map(|it| it.keys().cloned()).collect();
-    label.see(number, value.is_some(), all);
-    let text = match value {
+    let text = match feature.property(wanted) {
         None | Some(Value::Null) => String::new(),
         Some(Value::String(text)) => text.trim().to_owned(),
         Some(value @ (Value::Bool(_) | Value::Number(_))) => value.to_string(),
         Some(value) => bail!("label: found {value}, expected a word or a number"),
     };
     if is_missing(&text) {
-        return Ok(Row::Gap(format!("label: found {text:?} in {}", label.wanted)));
+        return Ok(Row::Gap(format!("label: found {text:?} in {wanted}")));
     }
     let is_geographic = reading.rows.is_geographic;
     let position = |at: &Position| match at.as_slice() {

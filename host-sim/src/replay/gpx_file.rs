@@ -3,9 +3,7 @@
 use anyhow::{Context as _, Result, anyhow, bail};
 use roxmltree::{Document, Node};
 
-use crate::replay::label_name::LabelName;
-use crate::replay::missing::is_missing;
-use crate::replay::reading::{Reading, Row};
+use crate::replay::reading::{Reading, Row, is_missing};
 use crate::replay::rows::{Layout, Rows};
 
 /// Elements that are points.
@@ -20,8 +18,7 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
 }
 
 fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
-    let name = reading.name;
-    let mut label = LabelName::of(name, "GPX", reading.layout)?;
+    let (name, wanted) = (reading.name, reading.label("GPX")?);
     let text = std::str::from_utf8(text)
         .map_err(|error| anyhow!("{name}: expected XML in UTF-8: {error}"))?;
     let document = Document::parse(text)
@@ -35,48 +32,47 @@ fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     reading.rows.is_geographic = true;
     let is_point = |node: &Node| node.is_element() && POINTS.contains(&node.tag_name().name());
     let (mut line, mut seen) = (1, 0);
-    for point in root.descendants().filter(is_point) {
+    let points = root.descendants().filter(is_point).map(|point| {
         let begins = point.range().start;
         line += text[seen..begins].matches('\n').count();
         seen = begins;
-        reading.row(line, |reading| read(reading, &mut label, point, line))?;
-    }
-    if label.first.is_none() {
+        (line, point)
+    });
+    let points: Vec<_> = points.collect();
+    let Some((line, first)) = points.first() else {
         bail!("{name}: found GPX with no points, expected wpt, rtept or trkpt");
+    };
+    if points.iter().all(|it| label(it.1, wanted).is_none()) {
+        let others: Vec<_> = elements(*first).map(|(name, _)| name).collect();
+        return Err(reading.no_label(wanted, *line, &others));
     }
-    label.end(|line| format!("{name}:{line}"))
+    for (line, point) in points {
+        reading.row(line, |reading| read(reading, wanted, point, line))?;
+    }
+    Ok(())
 }
 
-fn read(reading: &mut Reading, label: &mut LabelName, point: Node, line: usize) -> Result<Row> {
-    let wanted = label.wanted;
-    let told = text(point, wanted);
-    label.see(line, told.is_some(), || elements(point).map(|(name, _)| name).collect());
+fn read(reading: &mut Reading, wanted: &str, point: Node, line: usize) -> Result<Row> {
     let mut position = [0.0; 2];
-    let mut lacks = None;
-    for (value, attribute) in position.iter_mut().zip(["lat", "lon"]) {
-        let field = point.attribute(attribute);
-        let field = field
-            .with_context(|| format!("found a point without {attribute}, expected degrees"))?
-            .trim();
-        if is_missing(field) {
-            lacks = Some(format!("{attribute}: found {field:?}"));
-        } else {
-            *value = reading.number(attribute, field, line)?;
+    for (value, axis) in position.iter_mut().zip(["lat", "lon"]) {
+        let field = point.attribute(axis);
+        let field =
+            field.with_context(|| format!("found a point without {axis}, expected degrees"))?;
+        if is_missing(field.trim()) {
+            return Ok(Row::Gap(format!("{axis}: found {:?}", field.trim())));
         }
+        *value = reading.number(axis, field.trim(), line)?;
     }
-    let told = told.unwrap_or_default();
-    if is_missing(told) {
-        lacks = Some(format!("label: found {told:?} in {wanted}"));
-    }
-    if let Some(lacks) = lacks {
-        return Ok(Row::Gap(lacks));
+    let label = label(point, wanted).unwrap_or_default();
+    if is_missing(label) {
+        return Ok(Row::Gap(format!("label: found {label:?} in {wanted}")));
     }
     reading.keep(elements(point));
-    reading.samples(vec![position], told, line)
+    reading.samples(vec![position], label, line)
 }
 
 /// The text of the element called `wanted`: a child, or else one further below, as in extensions.
-fn text<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
+fn label<'a>(point: Node<'a, '_>, wanted: &str) -> Option<&'a str> {
     // Which prefix stands for a namespace is up to the file.
     let wanted = wanted.rsplit(':').next().unwrap_or(wanted);
     let is_it = |node: &Node| node.is_element() && node.tag_name().name() == wanted;

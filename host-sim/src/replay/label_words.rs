@@ -9,20 +9,17 @@ use planner_core::Label;
 
 use crate::replay::numbers::Numbers;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
-    Signs,
-    Bits,
-    Truth,
-    Answers,
-    GermanAnswers,
-}
+/// Words of each kind for +1 and -1. The first two kinds are of numbers.
+const WORDS: [[&str; 2]; 5] =
+    [["1", "-1"], ["1", "0"], ["true", "false"], ["yes", "no"], ["ja", "nein"]];
+const SIGNS: usize = 0;
+const BITS: usize = 1;
 
 /// The labels read so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct LabelWords {
     /// Their kind, and the line that showed it.
-    kind: Option<(Kind, usize)>,
+    kind: Option<(usize, usize)>,
     /// The line of the first 1, which is of two kinds.
     one: Option<usize>,
     /// Above it a value is +1, where labels are values.
@@ -65,32 +62,37 @@ impl LabelWords {
 
     /// The label that a word says.
     fn word(&mut self, field: &str, line: usize) -> Result<Label> {
-        let is = |word: &str| field.eq_ignore_ascii_case(word);
-        let (kind, is_positive) = match field.parse::<f64>() {
-            Ok(1.0) => {
+        let (kind, is_positive) = match (field.parse::<f64>(), self.kind) {
+            (Ok(1.0), None) => {
                 self.one.get_or_insert(line);
-                match self.kind {
-                    None => return Ok(Label::Positive),
-                    Some((kind @ (Kind::Signs | Kind::Bits), _)) => (kind, true),
-                    Some(_) => (Kind::Signs, true),
-                }
+                return Ok(Label::Positive);
             }
-            Ok(-1.0) => (Kind::Signs, false),
-            Ok(0.0) => (Kind::Bits, false),
-            Ok(other) if other.is_finite() => {
+            (Ok(1.0), Some((kind, _))) => {
+                self.one.get_or_insert(line);
+                (if kind == BITS { BITS } else { SIGNS }, true)
+            }
+            (Ok(-1.0), _) => (SIGNS, false),
+            (Ok(0.0), _) => (BITS, false),
+            (Ok(other), _) if other.is_finite() => {
                 bail!(
                     "label: found {other}, expected {EXPECTED}, or for measured values --threshold"
                 )
             }
-            _ if is("true") || is("false") => (Kind::Truth, is("true")),
-            _ if is("yes") || is("no") => (Kind::Answers, is("yes")),
-            _ if is("ja") || is("nein") => (Kind::GermanAnswers, is("ja")),
-            _ => bail!("label: found {field:?}, expected a finite number or a word: {EXPECTED}"),
+            _ => {
+                let place =
+                    |pair: &[&str; 2]| pair.iter().position(|it| field.eq_ignore_ascii_case(it));
+                let found =
+                    (0..).zip(&WORDS).find_map(|(kind, pair)| Some((kind, place(pair)? == 0)));
+                found.with_context(|| {
+                    format!(
+                        "label: found {field:?}, expected a finite number or a word: {EXPECTED}"
+                    )
+                })?
+            }
         };
-        let is_number = matches!(kind, Kind::Signs | Kind::Bits);
         let earlier = match self.kind {
             Some((other, line)) => (other != kind).then_some(line),
-            None => self.one.filter(|_| !is_number),
+            None => self.one.filter(|_| kind > BITS),
         };
         if let Some(earlier) = earlier {
             bail!(
@@ -107,7 +109,7 @@ impl LabelWords {
     /// The line of a 0 where there is no 1, and what was expected.
     pub(crate) fn end(self) -> Result<(), (usize, anyhow::Error)> {
         match self {
-            Self { kind: Some((Kind::Bits, line)), one: None, .. } => Err((
+            Self { kind: Some((BITS, line)), one: None, .. } => Err((
                 line,
                 anyhow!("label: found 0 and nowhere a 1 in the file, expected {EXPECTED}"),
             )),

@@ -236,7 +236,7 @@ impl Report for Replay {
         let in_file = || self.estimates().and_then(|line| self.in_file(&line));
         file::json(&Record {
             samples: self.file.samples.len(),
-            skipped: &self.file.skipped,
+            skipped: &self.file.rows.skipped,
             matter: doubt.is_none().then_some(bounding.len()),
             slope_arcs,
             intercept: *intercept,

@@ -2,10 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::str::FromStr;
 
 use anyhow::{Context as _, Result, anyhow, bail};
-use csv::StringRecord;
 
 use crate::mission::front::VertexRecord;
 use crate::output::{kind, plain};
@@ -44,13 +42,6 @@ pub(crate) struct MapRow {
     pub(crate) line: u64,
 }
 
-/// Where the columns are.
-struct Columns {
-    number: usize,
-    common: [usize; 7],
-    own: Option<[usize; 2]>,
-}
-
 impl MapFile {
     /// Reads a file.
     ///
@@ -65,18 +56,13 @@ impl MapFile {
         let mut reader = csv::Reader::from_reader(text);
         let titles = reader.headers().with_context(|| format!("{name}:1"))?.clone();
         let at = |title: &str| titles.iter().position(|it| it == title);
-        let column = |title: &str| {
-            at(title).with_context(|| {
-                format!("{name}: found no column {title}, expected the map of a front, as --map writes it")
-            })
-        };
         let numbers = if at("step").is_some() { "step" } else { "row" };
-        let own = OWN.iter().find_map(|it| Some((it[0] == "lat", [at(it[0])?, at(it[1])?])));
-        let mut common = [0; 7];
-        for (place, title) in common.iter_mut().zip(COLUMNS) {
-            *place = column(title)?;
+        if let Some(title) = COLUMNS.into_iter().chain([numbers]).find(|it| at(it).is_none()) {
+            bail!(
+                "{name}: found no column {title}, expected the map of a front, as --map writes it"
+            );
         }
-        let columns = Columns { number: column(numbers)?, common, own: own.map(|it| it.1) };
+        let own = OWN.into_iter().find(|own| own.iter().all(|it| at(it).is_some()));
         let mut rows = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|error| {
@@ -84,13 +70,14 @@ impl MapFile {
                 anyhow!("{name}:{line}: expected a row of a map: {error}")
             })?;
             let line = record.position().map_or(0, csv::Position::line);
-            let row = columns.row(&record, line, numbers);
+            let field = |title: &str| record.get(at(title)?).map(str::trim);
+            let row = row(field, numbers, own.unwrap_or(["x", "z"]), line);
             rows.push(row.map_err(|error| anyhow!("{name}:{line}: {error}"))?);
         }
         if rows.is_empty() {
             bail!("{name}: found a map without vertices, expected one whose robot found the front");
         }
-        let (is_geographic, is_own) = (own.is_some_and(|it| it.0), own.is_some());
+        let (is_geographic, is_own) = (own == Some(OWN[0]), own.is_some());
         let is_joined = at(ROBOT).is_some();
         Ok(Self { name, numbers, is_geographic, is_own, is_joined, rows })
     }
@@ -105,43 +92,34 @@ impl MapFile {
     }
 }
 
-impl Columns {
-    fn row(&self, record: &StringRecord, line: u64, numbers: &str) -> Result<MapRow> {
-        let number = |k: usize| number::<f64>(record, self.common[k], COLUMNS[k], "a number");
-        let [x, z] = [number(0)?, number(1)?];
-        let (heading, half_width) = (number(2)?, number(4)?);
-        if half_width < 0.0 {
-            bail!("half_width: found {half_width}, expected metres, 0 or more");
+/// The row of a line, from its fields by their titles.
+fn row<'a>(
+    field: impl Fn(&str) -> Option<&'a str>,
+    numbers: &str,
+    position: [&str; 2],
+    line: u64,
+) -> Result<MapRow> {
+    let number = |title: &str| {
+        let text = field(title).unwrap_or_default();
+        let number = text.parse::<f64>();
+        let number = number.map_err(|_| anyhow!("{title}: found {text:?}, expected a number"))?;
+        if !number.is_finite() {
+            bail!("{title}: found {number}, expected a finite number");
         }
-        let [curvature, turn_deviation] = [number(3)? as f32, number(5)? as f32];
-        let position = match self.own {
-            Some([a, b]) => {
-                let own = |at| self::number(record, at, "coordinates", "a number");
-                [own(a)?, own(b)?]
-            }
-            None => [x, z],
-        };
-        for (what, it) in [("x", x), ("z", z), ("heading", heading), ("half_width", half_width)]
-            .into_iter()
-            .chain(position.map(|it| ("coordinates", it)))
-        {
-            if !it.is_finite() {
-                bail!("{what}: found {it}, expected a finite number");
-            }
-        }
-        let vertex = VertexRecord { x, z, heading, curvature, half_width, turn_deviation };
-        let whole = "a whole number";
-        Ok(MapRow {
-            number: self::number(record, self.number, numbers, whole)?,
-            piece: self::number(record, self.common[6], "piece", whole)?,
-            position,
-            vertex,
-            line,
-        })
+        Ok(number)
+    };
+    let whole = |title: &str| {
+        let text = field(title).unwrap_or_default();
+        text.parse().map_err(|_| anyhow!("{title}: found {text:?}, expected a whole number"))
+    };
+    let [x, z, heading, half_width] = ["x", "z", "heading", "half_width"].map(number);
+    let (x, z, heading, half_width) = (x?, z?, heading?, half_width?);
+    if half_width < 0.0 {
+        bail!("half_width: found {half_width}, expected metres, 0 or more");
     }
-}
-
-fn number<T: FromStr>(record: &StringRecord, at: usize, what: &str, expected: &str) -> Result<T> {
-    let text = record.get(at).unwrap_or_default().trim();
-    text.parse().map_err(|_| anyhow!("{what}: found {text:?}, expected {expected}"))
+    let [curvature, turn_deviation] = ["curvature", "turn_deviation"].map(number);
+    let (curvature, turn_deviation) = (curvature? as f32, turn_deviation? as f32);
+    let [a, b] = position.map(number);
+    let vertex = VertexRecord { x, z, heading, curvature, half_width, turn_deviation };
+    Ok(MapRow { number: whole(numbers)?, piece: whole("piece")?, position: [a?, b?], vertex, line })
 }

@@ -1,14 +1,30 @@
 //! The rows of a file as they are read, whatever its kind: numbers, labels, and rows that lack a value.
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Context as _, Error, Result, anyhow, bail};
 use planner_core::Label;
 use serde_json::Value;
 
+use crate::replay::columns::Columns;
 use crate::replay::degrees::degrees;
-use crate::replay::delimiter::Delimiter;
 use crate::replay::label_words::LabelWords;
 use crate::replay::numbers::Numbers;
 use crate::replay::rows::{Layout, Rows, Told};
+
+/// Words that stand where nothing was measured, in upper or lower case.
+const MISSING: [&str; 20] = [
+    "", "nan", "na", "n/a", "#n/a", "null", "none", "nil", "nodata", "no data", "missing", "nd",
+    "n.d.", "bdl", "-", "--", "---", "?", "*", "***",
+];
+
+/// Numbers that do, and that no position has. `fills` has those of measured values.
+const MISSING_NUMBERS: [f64; 2] = [-9999.0, -99999.0];
+
+/// Whether a field says that there is no value.
+pub(crate) fn is_missing(field: &str) -> bool {
+    let is_number = || field.parse().is_ok_and(|it| MISSING_NUMBERS.contains(&it));
+    MISSING.iter().any(|word| field.eq_ignore_ascii_case(word))
+        || field.starts_with("-9999") && is_number()
+}
 
 /// A row.
 pub(crate) enum Row {
@@ -38,7 +54,7 @@ impl<'a> Reading<'a> {
     pub(crate) fn of(
         name: &'a str,
         layout: &'a Layout,
-        delimiter: Option<Delimiter>,
+        delimiter: Option<u8>,
         pass: impl Fn(&mut Self) -> Result<()>,
     ) -> Result<Rows> {
         let mut settled = None;
@@ -50,9 +66,7 @@ impl<'a> Reading<'a> {
             pass(&mut reading)?;
             let Self { mut rows, numbers, words, .. } = reading;
             let unit = rows.unit;
-            let at = |(row, error): (usize, anyhow::Error)| {
-                anyhow!("{}: {error}", unit.place(name, row))
-            };
+            let at = |(row, error): (usize, Error)| anyhow!("{}: {error}", unit.place(name, row));
             words.end().map_err(at)?;
             settled = numbers.end().map_err(at)?;
             if settled.is_none() {
@@ -61,6 +75,36 @@ impl<'a> Reading<'a> {
                 return Ok(rows);
             }
         }
+    }
+
+    /// The name of what contains the label, in a file of some kind that has its positions in a place of their own.
+    ///
+    /// # Errors
+    /// Names a flag that does not fit such a file.
+    pub(crate) fn label(&self, kind: &str) -> Result<&'a str> {
+        let (name, Layout { columns, delimiter, .. }) = (self.name, self.layout);
+        if delimiter.is_some() {
+            bail!("--delimiter: found {kind} in {name}, expected a table with it");
+        }
+        if columns.as_ref().is_some_and(Columns::name_positions) {
+            bail!(
+                "--columns: found {kind} in {name}, whose positions need no name; expected label=NAME alone"
+            );
+        }
+        Ok(columns.as_ref().and_then(Columns::label).unwrap_or("label"))
+    }
+
+    /// The error for a file in which no point has its label under this name. The first one has others.
+    pub(crate) fn no_label(&self, wanted: &str, number: usize, others: &[String]) -> Error {
+        let others: Vec<_> = others.iter().map(|other| format!("{other:?}")).collect();
+        let others = if others.is_empty() { "nothing".to_owned() } else { others.join(", ") };
+        let place = self.rows.unit.place(self.name, number);
+        if self.layout.columns.is_some() {
+            return anyhow!(
+                "--columns label={wanted}: found {others} at {place}, expected {wanted:?} among them"
+            );
+        }
+        anyhow!("{place}: found {others}, expected {wanted:?} among them, or --columns label=NAME")
     }
 
     /// Takes down a row.

@@ -8,7 +8,6 @@ use serde_json::{Map, Value};
 use crate::mission::results::{Name, Start, StepResult};
 use crate::replay::columns::Columns;
 use crate::replay::crs::Crs;
-use crate::replay::delimiter::Delimiter;
 
 /// How a file is to be read, as far as flags say.
 #[derive(Clone, Debug, Default)]
@@ -16,7 +15,7 @@ pub struct Layout {
     /// Its columns.
     pub columns: Option<Columns>,
     /// The delimiter between them.
-    pub delimiter: Option<Delimiter>,
+    pub delimiter: Option<u8>,
     /// The place that becomes the origin of positions.
     pub origin: Option<[f64; 2]>,
     /// The coordinate system of positions in metres.
@@ -132,19 +131,6 @@ impl Rows {
         if self.skipped.first.is_none() {
             (self.skipped.first, self.skipped.lacks) = (Some(line), what.to_owned());
         }
-    }
-
-    /// Takes measured rows away, each if it is said of it.
-    pub(crate) fn leave_out(&mut self, rows: &[bool]) {
-        fn kept<T>(of: &mut Vec<T>, rows: &[bool]) {
-            let mut rows = rows.iter();
-            of.retain(|_| rows.next() != Some(&true));
-        }
-        kept(&mut self.positions, rows);
-        kept(&mut self.labels, rows);
-        kept(&mut self.values, rows);
-        kept(&mut self.lines, rows);
-        kept(&mut self.told, rows);
     }
 
     /// Leaves a row out, which lacks something.

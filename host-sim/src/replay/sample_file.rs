@@ -8,9 +8,10 @@ use planner_core::{Label, Sample};
 use serde_json::Value;
 
 use crate::output::{kind, plain};
+use crate::replay::columns::Columns;
 use crate::replay::frame::{Frame, check_degrees};
-use crate::replay::rows::{Layout, Rows, Skipped, Told, Traced, Unit};
-use crate::replay::{encoding, geojson_file, gpx_file, swapped, table_file, trace_file};
+use crate::replay::rows::{Layout, Rows, Skipped, Told, Unit};
+use crate::replay::{encoding, geojson_file, gpx_file, table_file, trace_file};
 
 /// Samples in the order in which they were recorded.
 pub(crate) struct SampleFile {
@@ -20,23 +21,10 @@ pub(crate) struct SampleFile {
     pub(crate) samples: Vec<Sample>,
     /// How the file's positions became sites.
     pub(crate) frame: Frame,
-    /// The samples whose labels are certain, whatever `p` is.
-    pub(crate) certain: Vec<usize>,
-    /// How often the others are true, if the file says.
-    pub(crate) p: Option<f64>,
-    /// Rows that are no samples.
-    pub(crate) skipped: Skipped,
-    /// A row whose value is far outside the range of all others.
-    pub(crate) odd: Option<(usize, f64, [f64; 2])>,
-    /// Rows of an earlier time than the row before: how many, and the place of the first.
-    pub(crate) backwards: Option<(usize, usize)>,
+    /// What its rows are called.
     pub(crate) unit: Unit,
-    /// The mission, of a trace.
-    pub(crate) mission: Option<Box<Traced>>,
-    /// The line of the file on which each begins, or the number of its feature.
-    lines: Vec<usize>,
-    /// What else each row says, or none.
-    told: Vec<Told>,
+    /// What else is known of its rows.
+    pub(crate) rows: Rows,
 }
 
 /// Why a file is no table. A scenario may have been meant for another command.
@@ -77,7 +65,7 @@ impl SampleFile {
         Self::of(name, rows, layout)
     }
 
-    fn of(name: &str, rows: Rows, layout: &Layout) -> Result<Self> {
+    fn of(name: &str, mut rows: Rows, layout: &Layout) -> Result<Self> {
         let unit = rows.unit;
         let at = |index: usize| unit.place(name, rows.lines[index]);
         if let (true, Skipped { count, first: Some(line), lacks }) =
@@ -98,7 +86,7 @@ impl SampleFile {
                     "--crs {crs}: found latitude and longitude in {name}, expected metres (--columns x=TITLE,z=TITLE)"
                 );
             }
-            if let Some((index, why)) = swapped::first(&rows, layout) {
+            if let Some((index, why)) = swapped(&rows, layout) {
                 bail!("{}: {why}", at(index));
             }
             for (index, position) in rows.positions.iter().enumerate() {
@@ -122,33 +110,19 @@ impl SampleFile {
         };
         let both = rows.positions.iter().zip(&rows.labels);
         let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        let Rows { certain, p, lines, skipped, odd, backwards, mission, told, .. } = rows;
-        let name = name.to_owned();
-        Ok(Self {
-            name,
-            samples,
-            frame,
-            certain,
-            p,
-            skipped,
-            odd,
-            backwards,
-            unit,
-            mission,
-            lines,
-            told,
-        })
+        (rows.positions, rows.labels) = <_>::default();
+        Ok(Self { name: name.to_owned(), samples, frame, unit, rows })
     }
 
     /// The line on which a sample begins, or the number of its feature.
     pub(crate) fn line(&self, index: usize) -> usize {
-        self.lines[index]
+        self.rows.lines[index]
     }
 
     /// What a report begins with: the headline, the rows that are no samples, a value far outside all others, rows out of
     /// the order of their times, and the origin of positions, a line each, if there are such.
     pub(crate) fn beginning(&self, headline: &str) -> String {
-        let (Skipped { count, first, lacks }, unit) = (&self.skipped, self.unit);
+        let (Skipped { count, first, lacks }, unit) = (&self.rows.skipped, self.unit);
         let (row, name) = (unit.row(), unit.name());
         let s = if *count == 1 { "" } else { "s" };
         let skipped = first.map(|line| {
@@ -156,12 +130,12 @@ impl SampleFile {
                 "Skipped {count} {row}{s} without a value, the first on {name} {line} ({lacks}).\n"
             )
         });
-        let odd = self.odd.map(|(line, value, [least, most])| {
+        let odd = self.rows.odd.map(|(line, value, [least, most])| {
             format!(
                 "On {name} {line} stands {value}, all other values are from {least} to {most}: leave such rows out if that is no value.\n"
             )
         });
-        let backwards = self.backwards.map(|(count, line)| {
+        let backwards = self.rows.backwards.map(|(count, line)| {
             let rows = if count == 1 { "row is" } else { "rows are" };
             format!(
                 "{count} {rows} of an earlier time than the row before, the first on {name} {line}: rows count in the order of \
@@ -175,18 +149,45 @@ impl SampleFile {
 
     /// What else its row says.
     pub(crate) fn told(&self, index: usize) -> Told {
-        self.told.get(index).cloned().unwrap_or_default()
+        self.rows.told.get(index).cloned().unwrap_or_default()
     }
 
     /// The time of the row on a line, or of the feature with that number.
     pub(crate) fn time(&self, line: usize) -> Option<Value> {
-        let index = self.lines.binary_search(&line).ok()?;
+        let index = self.rows.lines.binary_search(&line).ok()?;
         let is_time = |name: &str| table_file::TIMES.iter().any(|it| it.eq_ignore_ascii_case(name));
-        self.told.get(index)?.iter().find(|(name, _)| is_time(name)).map(|it| it.1.clone())
+        self.rows.told.get(index)?.iter().find(|(name, _)| is_time(name)).map(|it| it.1.clone())
     }
 
     /// The file and the line of a sample.
     pub(crate) fn place(&self, index: usize) -> String {
         self.unit.place(&self.name, self.line(index))
     }
+}
+
+/// The first row whose latitude looks like a longitude, with the message; `None` if the latitudes may be latitudes.
+fn swapped(rows: &Rows, layout: &Layout) -> Option<(usize, String)> {
+    let is_beyond = |at: &[f64; 2]| at[0].abs() > 90.0;
+    let beyond = rows.positions.iter().filter(|at| is_beyond(at)).count();
+    // A few are mistakes in rows, which are reported one by one.
+    let all_would_do =
+        rows.positions.iter().all(|[lat, lon]| lat.abs() <= 360.0 && lon.abs() <= 90.0);
+    if 2 * beyond <= rows.positions.len() || !all_would_do {
+        return None;
+    }
+    let index = rows.positions.iter().position(is_beyond)?;
+    let remedy = match (&rows.titles, rows.unit) {
+        (Some([lat, lon]), _) => {
+            let label = layout.columns.as_ref().and_then(Columns::label);
+            let label = label.map(|label| format!(",label={label}")).unwrap_or_default();
+            format!("name them by --columns lat={lon},lon={lat}{label}")
+        }
+        (None, Unit::Feature) => "positions of GeoJSON have their longitude first".to_owned(),
+        (None, Unit::Line) => "write them the other way round".to_owned(),
+    };
+    let lat = rows.positions[index][0];
+    Some((
+        index,
+        format!("found the latitude {lat}: latitude and longitude look swapped; {remedy}"),
+    ))
 }

@@ -2,43 +2,56 @@
 
 use std::borrow::Cow;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use csv::ByteRecord;
 
 use crate::replay::columns::{Columns, Places};
 use crate::replay::degrees::degrees;
-use crate::replay::delimiter::Delimiter;
-use crate::replay::missing::is_missing;
 use crate::replay::numbers::Numbers;
-use crate::replay::reading::{Reading, Row};
+use crate::replay::reading::{Reading, Row, is_missing};
 use crate::replay::rows::{Layout, Rows};
 
-fn reader(text: &[u8], delimiter: Delimiter) -> csv::Reader<&[u8]> {
+/// Characters between fields, by their names, in the order in which they are tried. A space may be several.
+const DELIMITERS: [(u8, &str); 5] =
+    [(b',', "comma"), (b';', "semicolon"), (b'\t', "tab"), (b'|', "pipe"), (SPACE, "space")];
+const SPACE: u8 = b' ';
+
+/// A delimiter, by its name or as it is.
+///
+/// # Errors
+/// What was found and what was expected.
+pub fn delimiter(text: &str) -> Result<u8> {
+    let is_it = |(it, name): &(u8, &str)| text == *name || text.as_bytes() == [*it];
+    let found = DELIMITERS.iter().find(|it| is_it(it)).map(|it| it.0);
+    found.with_context(|| format!("found {text:?}, expected comma, semicolon, tab, pipe or space"))
+}
+
+fn reader(text: &[u8], delimiter: u8) -> csv::Reader<&[u8]> {
     csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .trim(csv::Trim::All)
         .comment(Some(COMMENT))
-        .delimiter(delimiter.byte())
+        .delimiter(delimiter)
         .from_reader(text)
 }
 
 /// The fields of a row. Several spaces between two fields make empty ones, which are left out.
-fn fields(row: &ByteRecord, delimiter: Delimiter) -> impl Iterator<Item = &[u8]> {
-    row.iter().filter(move |field| delimiter != Delimiter::Space || !field.is_empty())
+fn fields(row: &ByteRecord, delimiter: u8) -> impl Iterator<Item = &[u8]> {
+    row.iter().filter(move |field| delimiter != SPACE || !field.is_empty())
 }
 
 /// One field of a row.
-fn field(row: &ByteRecord, delimiter: Delimiter, column: usize) -> Cow<'_, str> {
+fn field(row: &ByteRecord, delimiter: u8, column: usize) -> Cow<'_, str> {
     let field = match delimiter {
-        Delimiter::Space => fields(row, delimiter).nth(column),
+        SPACE => fields(row, delimiter).nth(column),
         _ => row.get(column),
     };
     String::from_utf8_lossy(field.unwrap_or_default())
 }
 
 /// The columns by the first row, read with a delimiter; `at` is the place of that row, for errors.
-fn places(at: &str, first: &ByteRecord, columns: &Columns, delimiter: Delimiter) -> Result<Places> {
+fn places(at: &str, first: &ByteRecord, columns: &Columns, delimiter: u8) -> Result<Places> {
     let titles: Vec<_> = fields(first, delimiter).map(String::from_utf8_lossy).collect();
     let titles: Vec<_> = titles.iter().map(AsRef::as_ref).collect();
     // A value that is missing is no title, and no title is empty.
@@ -58,11 +71,11 @@ const UNITS: usize = 3;
 
 /// The delimiter of the heading, and how many rows stand above it. The heading is the first row that can be understood
 /// with some delimiter. Without one, the answer is a comma and no row.
-fn heading(text: &[u8], columns: &Columns, delimiter: Option<Delimiter>) -> (Delimiter, usize) {
-    let all = delimiter.map_or(Delimiter::ALL.to_vec(), |it| vec![it]);
-    let above = |delimiter: &Delimiter| {
+fn heading(text: &[u8], columns: &Columns, delimiter: Option<u8>) -> (u8, usize) {
+    let all = delimiter.map_or(DELIMITERS.map(|it| it.0).to_vec(), |it| vec![it]);
+    let above = |delimiter: &u8| {
         // Words of a sentence are no titles.
-        let is_guessed = all.len() > 1 && *delimiter == Delimiter::Space;
+        let is_guessed = all.len() > 1 && *delimiter == SPACE;
         let most = if is_guessed { 1 } else { PREAMBLE };
         let rows = reader(text, *delimiter).into_byte_records().take(most);
         let is_clear = |row: &ByteRecord| places("", row, columns, *delimiter).is_ok();
@@ -85,7 +98,7 @@ struct Times {
 
 impl Times {
     /// Those below the titles of a row.
-    fn below(titles: &ByteRecord, delimiter: Delimiter) -> Self {
+    fn below(titles: &ByteRecord, delimiter: u8) -> Self {
         let is_time = |title: &[u8]| {
             TIMES.iter().any(|it| it.as_bytes().eq_ignore_ascii_case(title.trim_ascii()))
         };
@@ -93,7 +106,7 @@ impl Times {
     }
 
     /// Whether a row has an earlier time than the one before.
-    fn is_backwards(&mut self, row: &ByteRecord, delimiter: Delimiter) -> bool {
+    fn is_backwards(&mut self, row: &ByteRecord, delimiter: u8) -> bool {
         let Some(column) = self.column else { return false };
         let now = field(row, delimiter, column).trim().to_owned();
         let numbers = [&self.last, &now].map(|it| it.parse::<f64>().ok());
@@ -127,11 +140,11 @@ fn pass(
     reading: &mut Reading,
     text: &[u8],
     columns: &Columns,
-    (delimiter, above): (Delimiter, usize),
+    (delimiter, above): (u8, usize),
 ) -> Result<()> {
     let name = reading.name;
     let mut reader = reader(text, delimiter);
-    let mut lines = Lines::of(text);
+    let mut lines = Lines { text, at: 0, line: 1 };
     let mut row = ByteRecord::new();
     let mut next = |row: &mut ByteRecord| -> Result<Option<usize>> {
         let there = reader.read_byte_record(row).map_err(|error| anyhow!("{name}: {error}"))?;
@@ -143,13 +156,13 @@ fn pass(
     }
     let first = format!("{name}:{}", line.unwrap_or(1));
     let places = places(&first, &row, columns, delimiter)?;
-    reading.rows.is_geographic = places.is_geographic;
+    reading.rows.is_geographic = places.is_geographic();
     let (mut times, mut titles) = (Times::default(), None);
     if places.has_header {
         titles = Some(row.clone());
         times = Times::below(&row, delimiter);
         let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
-        reading.rows.titles = Some(places.position.map(title));
+        reading.rows.titles = Some(places.position().map(title));
         line = next(&mut row)?;
         let is_unit = |row: &ByteRecord, column: usize| {
             let field = field(row, delimiter, column);
@@ -158,7 +171,7 @@ fn pass(
         let mut units = 0;
         while let Some(number) = line
             && units < UNITS
-            && places.position.into_iter().all(|column| is_unit(&row, column))
+            && places.position().into_iter().all(|column| is_unit(&row, column))
         {
             reading.rows.heading(number, "a row of units");
             units += 1;
@@ -179,7 +192,7 @@ fn pass(
         reading.row(number, |reading| {
             if let Some(titles) = &titles {
                 let all = fields(titles, delimiter).map(String::from_utf8_lossy);
-                let beside = all.enumerate().filter(|it| !places.position.contains(&it.0));
+                let beside = all.enumerate().filter(|it| !places.position().contains(&it.0));
                 reading.keep(beside.map(|(column, title)| {
                     let text = field(&row, delimiter, column);
                     (title.trim().to_owned(), text.trim().to_owned())
@@ -196,20 +209,17 @@ fn read(
     reading: &mut Reading,
     row: &ByteRecord,
     places: Places,
-    delimiter: Delimiter,
+    delimiter: u8,
     line: usize,
 ) -> Result<Row> {
-    let [a, b] = places.position;
-    let fields = [a, b, places.label].map(|column| field(row, delimiter, column));
+    let fields = places.columns.map(|column| field(row, delimiter, column));
     let texts = fields.each_ref().map(|field| field.trim());
-    let [first, second] = places.names();
-    let names = [first, second, "label"];
+    let names = places.names;
     if let Some((name, text)) = names.iter().zip(texts).find(|(_, text)| is_missing(text)) {
         return Ok(Row::Gap(format!("{name}: found {text:?}")));
     }
-    let position =
-        [reading.coordinate(first, texts[0], line)?, reading.coordinate(second, texts[1], line)?];
-    reading.samples(vec![position], texts[2], line)
+    let [a, b] = [0, 1].map(|k| reading.coordinate(names[k], texts[k], line));
+    reading.samples(vec![[a?, b?]], texts[2], line)
 }
 
 const COMMENT: u8 = b'#';
@@ -221,37 +231,25 @@ struct Lines<'a> {
     line: usize,
 }
 
-impl<'a> Lines<'a> {
-    fn of(text: &'a [u8]) -> Self {
-        Self { text, at: 0, line: 1 }
-    }
-
+impl Lines<'_> {
     /// The line on which a row begins. The reader counts a row from the end of the row before. Blank lines and comments
     /// between the two are skipped here.
     fn row(&mut self, row: &ByteRecord) -> usize {
-        let begins = row.position().map_or(0, |position| position.byte() as usize);
-        while self.at < begins {
-            self.advance();
-        }
+        let mut rest = &self.text[row.position().map_or(0, |it| it.byte() as usize)..];
         loop {
-            match self.text.get(self.at) {
-                Some(b'\r' | b'\n') => self.advance(),
-                Some(&COMMENT) => {
-                    while self.text.get(self.at).is_some_and(|byte| *byte != b'\n') {
-                        self.advance();
-                    }
-                }
-                _ => return self.line,
-            }
+            let end = rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len());
+            rest = match rest.first() {
+                Some(b'\r' | b'\n') => &rest[1..],
+                Some(&COMMENT) => &rest[end..],
+                _ => break,
+            };
         }
-    }
-
-    fn advance(&mut self) {
-        match self.text[self.at..] {
-            [b'\r', b'\n', ..] => {} // the second ends the line
-            [b'\r' | b'\n', ..] => self.line += 1,
-            _ => {}
-        }
-        self.at += 1;
+        let begins = self.text.len() - rest.len();
+        let passed = &self.text[self.at..begins];
+        let count = |end: u8| passed.iter().filter(|byte| **byte == end).count();
+        let both = passed.windows(2).filter(|pair| pair == b"\r\n").count();
+        self.line += count(b'\r') + count(b'\n') - both;
+        self.at = begins;
+        self.line
     }
 }

@@ -42,68 +42,43 @@ pub(crate) struct Row {
     pub(crate) driven: f64,
 }
 
-/// What takes in the rows.
-pub(crate) enum Known {
-    /// A follower that is led, for rows that no mission has read.
-    Rows(Box<Track<AnyVehicle>>),
-    /// The follower of the mission.
-    Mission(Box<Track<AnyVehicle>>, Pose),
-    /// The guard of the mission.
-    Guard(Box<Guard<AnyVehicle>>, Pose),
-}
-
-impl Known {
-    /// Takes in a row. Whether the front is sought anew.
-    pub(crate) fn take(&mut self, row: &Row) -> Result<bool> {
-        match self {
-            Self::Rows(follower) => {
-                let _ = follower.plan(row.pose());
-                take(follower, row)
-            }
-            Self::Mission(follower, pose) => {
-                // What it plans may differ, if it is told something else than in the mission.
-                let _ = follower.plan(mem::replace(pose, row.pose()));
-                take(follower, row)
-            }
-            Self::Guard(guard, pose) => {
-                let _ = guard.plan(mem::replace(pose, row.pose()));
-                take(guard, row)
-            }
-        }
-    }
+/// What takes in the rows: a follower, or the guard of a mission.
+pub(crate) trait Follower {
+    /// Takes in a row, planned from a pose. Whether the front is sought anew.
+    fn take(&mut self, from: Pose, row: &Row) -> Result<bool>;
 
     /// Whether the front is known.
-    pub(crate) fn is_found(&self) -> bool {
-        match self {
-            Self::Rows(it) | Self::Mission(it, _) => it.found().is_some(),
-            Self::Guard(it, _) => it.found().is_some(),
-        }
-    }
+    fn is_found(&self) -> bool;
 
-    pub(crate) fn one_label(&self) -> Option<OneLabel> {
-        match self {
-            Self::Rows(it) | Self::Mission(it, _) => it.one_label(),
-            Self::Guard(it, _) => it.one_label(),
-        }
-    }
+    fn one_label(&self) -> Option<OneLabel>;
 
-    pub(crate) fn curve(&self) -> &Curve {
-        match self {
-            Self::Rows(it) | Self::Mission(it, _) => it.belief(),
-            Self::Guard(it, _) => it.belief(),
-        }
-    }
+    fn curve(&self) -> &Curve;
 }
 
-/// Takes in a row; whether the follower began again.
-fn take<const N: usize>(follower: &mut Track<AnyVehicle, Area, N>, row: &Row) -> Result<bool> {
-    let was_begun = follower.belief().is_begun();
-    for (site, reading) in &row.passed {
-        follower.observe_on_the_way(*site, *reading)?;
+impl<const N: usize> Follower for Track<AnyVehicle, Area, N> {
+    fn take(&mut self, from: Pose, row: &Row) -> Result<bool> {
+        // What it plans may differ, if it is told something else than in the mission.
+        let _ = self.plan(from);
+        let was_begun = self.belief().is_begun();
+        for (site, reading) in &row.passed {
+            self.observe_on_the_way(*site, *reading)?;
+        }
+        self.observe(row.pose(), row.label.map(Into::into))?;
+        let is_alarmed = self.alarm().is_some_and(|it| it.is_grave());
+        Ok(is_alarmed || was_begun && !self.belief().is_begun())
     }
-    follower.observe(row.pose(), row.label.map(Into::into))?;
-    let is_alarmed = follower.alarm().is_some_and(|it| it.is_grave());
-    Ok(is_alarmed || was_begun && !follower.belief().is_begun())
+
+    fn is_found(&self) -> bool {
+        self.found().is_some()
+    }
+
+    fn one_label(&self) -> Option<OneLabel> {
+        Track::one_label(self)
+    }
+
+    fn curve(&self) -> &Curve {
+        self.belief()
+    }
 }
 
 impl Row {
@@ -116,7 +91,9 @@ impl Row {
 pub(crate) struct RecordedTrack {
     pub(crate) rows: Vec<Row>,
     /// What is known of the front before the first row.
-    pub(crate) known: Known,
+    pub(crate) known: Box<dyn Follower>,
+    /// Where a mission begins. A follower that is led plans from each row itself.
+    start: Option<Pose>,
     /// The front counts as found where its half-width is below this, metres.
     pub(crate) width: f32,
     /// How often labels are true.
@@ -126,16 +103,27 @@ pub(crate) struct RecordedTrack {
 }
 
 impl RecordedTrack {
+    /// Takes in the row of an index. Whether the front is sought anew.
+    pub(crate) fn take(&mut self, index: usize) -> Result<bool> {
+        let row = &self.rows[index];
+        let from = self.start.as_mut().map(|from| mem::replace(from, row.pose()));
+        self.known.take(from.unwrap_or(row.pose()), row)
+    }
+
     /// The track of a file. One of a table begins with nothing known of the box around its samples. That of a trace
     /// begins as its mission did: with its area, its given points and its longest motion.
     ///
     /// # Errors
     /// Names the file, what was found and what was expected.
     pub(crate) fn of(file: &SampleFile, front: Front, trust: answer::Trust) -> Result<Self> {
-        let told = file.mission.as_ref().and_then(|it| it.start.p_told);
-        let p = trust.p.map(PTold::Number).or(told).unwrap_or(PTold::Number(file.p.unwrap_or(1.0)));
+        let told = file.rows.mission.as_ref().and_then(|it| it.start.p_told);
+        let p = trust
+            .p
+            .map(PTold::Number)
+            .or(told)
+            .unwrap_or(PTold::Number(file.rows.p.unwrap_or(1.0)));
         let noise = noise(p, trust.tolerance).with_context(|| file.name.clone())?;
-        match file.mission.as_deref() {
+        match file.rows.mission.as_deref() {
             Some(mission) => Self::of_mission(file, mission, (front, p, noise)),
             None => Self::of_rows(file, (front, p, noise)),
         }
@@ -161,7 +149,8 @@ impl RecordedTrack {
         Ok(Self {
             rows,
             width: follower.width(),
-            known: Known::Rows(Box::new(follower)),
+            known: Box::new(follower),
+            start: None,
             p,
             is_closed: false,
         })
@@ -202,22 +191,24 @@ impl RecordedTrack {
         let vehicle = vehicle.with_context(named)?;
         let pose = at(start.pose.x, start.pose.z)?;
         let pose = Pose { site: pose, heading: Heading::from_radians(start.pose.heading)? };
-        let (known, width) = if let Some(metres) = start.front.and_then(|it| it.watch) {
-            let told = (front, FrontStretch::metres(metres)?);
-            let guard = Guard::watching(area, vehicle, told, noise);
-            let guard = guard.and_then(|it| it.seeking(seeking)).with_context(named)?;
-            let width = guard.width();
-            (Known::Guard(Box::new(guard.knowing(given)), pose), width)
-        } else {
-            let follower = Track::new(area, vehicle, front, noise);
-            let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
-            let width = follower.width();
-            (Known::Mission(Box::new(follower.knowing(given)), pose), width)
-        };
+        let (known, width): (Box<dyn Follower>, _) =
+            if let Some(metres) = start.front.and_then(|it| it.watch) {
+                let told = (front, FrontStretch::metres(metres)?);
+                let guard = Guard::watching(area, vehicle, told, noise);
+                let guard = guard.and_then(|it| it.seeking(seeking)).with_context(named)?;
+                let width = guard.width();
+                (Box::new(guard.knowing(given)), width)
+            } else {
+                let follower = Track::new(area, vehicle, front, noise);
+                let follower = follower.and_then(|it| it.seeking(seeking)).with_context(named)?;
+                let width = follower.width();
+                (Box::new(follower.knowing(given)), width)
+            };
         Ok(Self {
             rows: steps.iter().zip(sites).zip(ways).map(row).collect::<Result<_>>()?,
             width,
             known,
+            start: Some(pose),
             p,
             is_closed: reason.as_deref() == Some("closed"),
         })

@@ -2,10 +2,12 @@
 //!
 //! The directions of all lines of the set lie within less than half a turn. So a column across the middle direction
 //! meets each line once. On a column the lines of a hypothesis fill an interval between two of its bounds. The places
-//! of a column through which lines of a given probability pass are intervals too, found by a sum over sorted ends. From
-//! one column to the next the intervals join to polygons. Columns stand at every sample, where a hypothesis's ends
-//! turn, and closely between.
+//! of a column through which lines of a given probability pass are intervals too, found by a sum over sorted ends. A
+//! band is the union of what lies between the intervals of neighbouring columns. Columns stand at every sample, where a
+//! hypothesis's ends turn, and closely between.
 
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::float::simplify::SimplifyShape as _;
 use nalgebra::{Point2, Vector2};
 use planner_core::PosteriorView;
 use planner_core::geometry::lattice::Vector;
@@ -33,7 +35,7 @@ const COLUMNS: u32 = 240;
 pub struct Band {
     /// The least probability of the hypotheses of the credible set that have lines through a place of it.
     pub from: f64,
-    /// Polygons that touch at most, each as its corners in metres. A hole is between two of them.
+    /// Polygons, each as its corners in metres, filled together by the even-odd rule.
     pub rings: Vec<Way>,
 }
 
@@ -58,12 +60,6 @@ struct Weighed {
 
 type Interval = [f64; 2];
 
-/// A polygon that grows from column to column: its lower and its upper side.
-#[derive(Default)]
-struct Growing {
-    sides: [Vec<Point2<f64>>; 2],
-}
-
 /// The bands of a table's credible set in an area, each within the one before it.
 pub(crate) fn of(table: &Table, area: &MissionArea) -> Vec<Band> {
     let posterior = PosteriorView::new(table);
@@ -82,12 +78,16 @@ pub(crate) fn of(table: &Table, area: &MissionArea) -> Vec<Band> {
     let ends: Vec<_> = columns.iter().map(|&s| Ends::of(&hypotheses, s)).collect();
     let detail = ground.diameter() / 20_000.0;
     let band = |from| {
-        let rings = join(columns.iter().copied().zip(ends.iter().map(|it| it.from(from))));
-        let in_area = |ring: Growing| {
-            let corners = ring.corners(detail).into_iter().map(|it| frame.place(it));
+        let intervals: Vec<_> = ends.iter().map(|it| it.from(from)).collect();
+        let both = columns.windows(2).zip(intervals.windows(2));
+        let parts: Vec<_> =
+            both.flat_map(|(s, it)| between([s[0], s[1]], &it[0], &it[1])).collect();
+        let rings = parts.simplify_shape(FillRule::NonZero).into_iter().flatten();
+        let in_area = |ring: Vec<[f64; 2]>| {
+            let corners = straightened(ring, detail).into_iter().map(|it| frame.place(it));
             Some(Polygon(corners.collect()).within(&ground).0).filter(|corners| corners.len() > 2)
         };
-        Band { from, rings: rings.into_iter().filter_map(in_area).collect() }
+        Band { from, rings: rings.filter_map(in_area).collect() }
     };
     let is_seen = |band: &Band| {
         let size: f64 = band.rings.iter().map(|ring| Polygon(ring.clone()).area()).sum();
@@ -168,75 +168,25 @@ impl Ends {
     }
 }
 
-/// Joins the intervals of columns, in order, to polygons.
-fn join(columns: impl Iterator<Item = (f64, Vec<Interval>)>) -> Vec<Growing> {
-    let mut done = Vec::new();
-    let mut open: Vec<(Interval, Growing)> = Vec::new();
-    let mut before = 0.0;
-    for (s, intervals) in columns {
-        if intervals.len() == open.len() {
-            for ((last, ring), interval) in open.iter_mut().zip(intervals) {
-                ring.grow(s, interval);
-                *last = interval;
-            }
-        } else {
-            // Some begin, end, part or meet: all end here and begin anew, and what overlaps is joined between.
-            let ended = std::mem::take(&mut open);
-            for [from, to] in parts(&ended, &intervals) {
-                let mut between = Growing::default();
-                between.grow(before, from);
-                between.grow(s, to);
-                done.push(between);
-            }
-            done.extend(ended.into_iter().map(|(_, ring)| ring));
-            open.extend(intervals.into_iter().map(|interval| {
-                let mut ring = Growing::default();
-                ring.grow(s, interval);
-                (interval, ring)
-            }));
-        }
-        before = s;
-    }
-    done.extend(open.into_iter().map(|(_, ring)| ring));
-    done
-}
-
-/// What lies between two columns with different numbers of intervals: pairs that overlap. If one interval overlaps
-/// several, each has its share, up to the middle of the gap to the next.
-fn parts(left: &[(Interval, Growing)], right: &[Interval]) -> Vec<[Interval; 2]> {
-    let left: Vec<_> = left.iter().map(|(interval, _)| *interval).collect();
-    let meet = |a: &Interval, b: &Interval| a[0] <= b[1] && b[0] <= a[1];
-    let share = |of: Interval, beside: &[Interval], own: &Interval| {
-        let partners: Vec<_> = beside.iter().filter(|it| meet(it, &of)).collect();
-        let k = partners.iter().position(|it| std::ptr::eq(*it, own)).unwrap_or_default();
-        let cut = |k: usize| f64::midpoint(partners[k - 1][1], partners[k][0]).clamp(of[0], of[1]);
-        [
-            if k == 0 { of[0] } else { cut(k) },
-            if k + 1 == partners.len() { of[1] } else { cut(k + 1) },
-        ]
-    };
+/// The ground between two columns: a part for each interval of one and each of the other that it overlaps.
+fn between([s, t]: [f64; 2], left: &[Interval], right: &[Interval]) -> Vec<Vec<[f64; 2]>> {
     let pairs = left.iter().flat_map(|a| right.iter().map(move |b| (a, b)));
-    let meeting = pairs.filter(|(a, b)| meet(a, b));
-    meeting.map(|(a, b)| [share(*a, right, b), share(*b, &left, a)]).collect()
+    let meeting = pairs.filter(|(a, b)| a[0] <= b[1] && b[0] <= a[1]);
+    meeting.map(|(a, b)| vec![[s, a[0]], [t, b[0]], [t, b[1]], [s, a[1]]]).collect()
 }
 
-impl Growing {
-    fn grow(&mut self, s: f64, interval: Interval) {
-        for (side, t) in self.sides.iter_mut().zip(interval) {
-            side.push(Point2::new(s, t));
-        }
-    }
-
-    /// Its corners in order, without those that are straight to some detail.
-    fn corners(self, detail: f64) -> Vec<Point2<f64>> {
-        let [lower, upper] = self.sides.map(|side| straightened(&side, detail));
-        lower.into_iter().chain(upper.into_iter().rev()).collect()
-    }
+/// A ring without the corners that are straight to some detail.
+fn straightened(ring: Vec<[f64; 2]>, detail: f64) -> Vec<Point2<f64>> {
+    let first = ring.first().copied();
+    let closed: Vec<_> = ring.into_iter().chain(first).map(Point2::from).collect();
+    let mut kept = simplified(&closed, detail);
+    kept.pop();
+    kept
 }
 
 /// A line of places without those that are nearer than this to the straight line between the ones that stay
 /// (Douglas and Peucker's).
-fn straightened(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
+fn simplified(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
     let (Some(&from), Some(&to)) = (line.first(), line.last()) else { return Vec::new() };
     let way = to - from;
     let off = |at: &Point2<f64>| {
@@ -250,12 +200,11 @@ fn straightened(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
         (1..line.len().saturating_sub(1)).max_by(|a, b| off(&line[*a]).total_cmp(&off(&line[*b])));
     match furthest {
         Some(k) if off(&line[k]) > detail => {
-            let mut kept = straightened(&line[..=k], detail);
+            let mut kept = simplified(&line[..=k], detail);
             kept.pop();
-            kept.extend(straightened(&line[k..], detail));
+            kept.extend(simplified(&line[k..], detail));
             kept
         }
-        _ if line.len() == 1 => vec![from],
         _ => vec![from, to],
     }
 }

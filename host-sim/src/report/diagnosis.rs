@@ -9,15 +9,14 @@ const NAMED: f64 = 0.1;
 /// Steps that are listed at most.
 const LISTED: usize = 8;
 
+/// The headings of what is said.
+pub(crate) const HEADINGS: [&str; 4] = ["Seen", "Best line", "Explanation", "To do"];
+
 /// What is said, each sentence with its heading. `line` is the best line in words.
 pub(crate) fn told(record: &DiagnosisRecord, line: &str) -> Vec<(&'static str, String)> {
-    let seen = record.refuting.as_ref().map(|it| ("Seen", seen(it)));
-    let rest = [
-        ("Best line", best_line(record, line)),
-        ("Explanation", explanation(record)),
-        ("To do", advice(record)),
-    ];
-    seen.into_iter().chain(rest).collect()
+    let rest = [best_line(record, line), explanation(record), advice(record)].map(Some);
+    let all = [record.refuting.as_ref().map(seen)].into_iter().chain(rest);
+    HEADINGS.into_iter().zip(all).filter_map(|(of, words)| Some((of, words?))).collect()
 }
 
 fn seen(&RefutingRecord { step, x, z, label, expected }: &RefutingRecord) -> String {

@@ -14,7 +14,6 @@ pub mod ground;
 pub mod log;
 pub(crate) mod look;
 mod map;
-mod numbers;
 pub mod page;
 pub mod paper;
 pub mod patches;

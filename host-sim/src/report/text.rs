@@ -7,7 +7,6 @@ use planner_core::belief::evidence::{Alarm, Suspect};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
-use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::from_nothing::SeekRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, PTold, ReliabilityRecord,
@@ -110,13 +109,13 @@ pub fn outcome_alone(title: &str, results: &Results) -> String {
 }
 
 fn story(title: &str, results: &Results) -> String {
-    let beginning = beginning(title, &results.start);
+    let beginning = beginning(&results.start);
     let steps = if results.end.best.is_some() {
         noisy_steps(&results.steps)
     } else {
         steps(&results.steps, &results.start)
     };
-    format!("{beginning}{steps}")
+    format!("{title}\n{beginning}{steps}")
 }
 
 fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String {
@@ -128,34 +127,12 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
         results.travelled(),
         results.cost(),
     );
-    if let Some(readings) = readings(results) {
-        text += &readings;
-        text.push('\n');
-    }
-    if let Some(seek) = &results.end.seek {
-        text += &sought(seek);
-    }
-    if let Some(map) = &results.end.front {
-        text += &front::map(map, "step");
-    }
-    if let Some(goal) = &results.end.goal {
-        text += &promise(goal, &results.end.reason);
-        if let Some(told) = results.start.tolerance.filter(|_| goal.is_met && goal.level.is_none())
-        {
-            text += &of_the_boundary(&told);
-        }
-    }
-    if let Some(reliability) = &results.end.reliability {
-        text += &shown(reliability);
-    }
-    text.extend(warning(&results.end));
-    for (of, words) in results.end.diagnosis.iter().flat_map(|it| diagnosed(it)) {
+    for (of, words) in ended(results) {
+        // Only what is said of a diagnosis needs its heading.
+        let heading =
+            if diagnosis::HEADINGS.contains(&of) { format!("{of}: ") } else { String::new() };
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{of}: {words}");
-    }
-    if let Some(remedy) = remedy(results) {
-        text += remedy;
-        text.push('\n');
+        let _ = writeln!(text, "{heading}{}", words.trim_end());
     }
     if results.end.front.is_some() {
         return text;
@@ -164,8 +141,26 @@ fn end(results: &Results, estimates: &[(&str, Option<LineRecord>); 3]) -> String
     text + &outcome(&results.end) + &errors(results, estimates)
 }
 
+/// What a mission came to beside its lines: sentences with their headings.
+pub(crate) fn ended(results: &Results) -> Vec<(&'static str, String)> {
+    let End { reason, seek, front, goal, reliability, diagnosis, .. } = &results.end;
+    let mut told = Vec::new();
+    told.extend(readings(results).map(|it| ("Readings", it)));
+    told.extend(seek.iter().map(|it| ("Sought", sought(it))));
+    told.extend(front.iter().map(|it| ("Map", front::map(it, "step"))));
+    told.extend(goal.iter().map(|it| ("Goal", promise(it, reason))));
+    let is_sure = goal.is_some_and(|it| it.is_met && it.level.is_none());
+    let tolerance = results.start.tolerance.filter(|_| is_sure);
+    told.extend(tolerance.and_then(|it| Some(("Boundary", of_the_boundary(&it)?))));
+    told.extend(reliability.iter().map(|it| ("Sensor", shown(it))));
+    told.extend(warning(&results.end).map(|it| ("Warning", it)));
+    told.extend(diagnosis.iter().flat_map(|it| diagnosis::told(it, &line(&it.line))));
+    told.extend(remedy(results).map(|it| ("Advice", it.to_owned())));
+    told
+}
+
 /// How many readings there were on the way and at the ends of motions, where there are such on the way.
-pub(crate) fn readings(results: &Results) -> Option<String> {
+fn readings(results: &Results) -> Option<String> {
     let (readings, cuts) = results.readings();
     let told = if results.start.labels_err { "were taken in" } else { "ruled out lines" };
     (readings > 0).then(|| {
@@ -173,13 +168,8 @@ pub(crate) fn readings(results: &Results) -> Option<String> {
     })
 }
 
-/// Why no straight, still line explains the labels, and what to do: sentences with their headings.
-pub(crate) fn diagnosed(record: &DiagnosisRecord) -> Vec<(&'static str, String)> {
-    diagnosis::told(record, &line(&record.line))
-}
-
 /// What seeking the boundary from nothing came to, in words.
-pub(crate) fn sought(record: &SeekRecord) -> String {
+fn sought(record: &SeekRecord) -> String {
     let &SeekRecord { found, labels, metres, label, radius, patch, coast } = record;
     let took = format!("{labels} labels and {metres:.1} m");
     match (found, label, radius, coast) {
@@ -254,7 +244,7 @@ fn remedy(results: &Results) -> Option<&'static str> {
 }
 
 /// Whether the goal is met, in words, of a mission that ended for a reason.
-pub(crate) fn promise(goal: &GoalRecord, reason: &str) -> String {
+fn promise(goal: &GoalRecord, reason: &str) -> String {
     let &GoalRecord { slope_arc_deg, misclassified, level, is_met, audit } = goal;
     let sure = level.map_or(String::new(), |level| format!(" with probability {level} at least"));
     let is_refuted = audit.is_some_and(|audit| audit.refuted.is_some());
@@ -284,15 +274,13 @@ pub(crate) fn promise(goal: &GoalRecord, reason: &str) -> String {
 }
 
 /// What a promise means for a boundary that bends or moves.
-pub(crate) fn of_the_boundary(told: &ToleranceRecord) -> String {
-    let &ToleranceRecord { bend, drift, .. } = told;
-    if bend + drift == 0.0 {
-        return String::new();
-    }
-    format!(
-        "If the boundary bends by at most {bend} m and moves by at most {drift} m, one of these lines was within {bend} m \
-         of it at each time.\n"
-    )
+fn of_the_boundary(&ToleranceRecord { bend, drift, .. }: &ToleranceRecord) -> Option<String> {
+    (bend + drift != 0.0).then(|| {
+        format!(
+            "If the boundary bends by at most {bend} m and moves by at most {drift} m, one of these lines was within \
+             {bend} m of it at each time."
+        )
+    })
 }
 
 /// What an audit came to, in words.
@@ -320,7 +308,7 @@ fn audited(audit: &AuditRecord) -> String {
 }
 
 /// What speaks against a straight, still line, or against a front as it was told, in words.
-pub(crate) fn warning(end: &End) -> Option<String> {
+fn warning(end: &End) -> Option<String> {
     let AlarmRecord { step, evidence, suspect } = end.alarm?;
     let level = Alarm::ALARM;
     let alarm = match suspect {
@@ -332,8 +320,9 @@ pub(crate) fn warning(end: &End) -> Option<String> {
     Some(format!("{name}: {alarm}. The evidence is {much} at step {step}; {level} is an alarm.\n"))
 }
 
-fn beginning(title: &str, start: &Start) -> String {
-    let mut text = format!("{title}\n");
+/// What a mission is, before it begins: sentences, a line each.
+pub(crate) fn beginning(start: &Start) -> String {
+    let mut text = String::new();
     let truth = match (&start.truth, &start.boundary) {
         (Some(truth), _) => format!("line, unknown to the agent: {}", line(truth)),
         (_, Some(boundary)) => {
@@ -390,7 +379,7 @@ fn possible(start: &Start) -> String {
 }
 
 /// The oracle's points, and what is known of the line beside them: a line of text each.
-fn given(start: &Start) -> String {
+pub(crate) fn given(start: &Start) -> String {
     let points = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
     let points = points.collect::<Vec<_>>().join(", ");
     let points = (!points.is_empty()).then(|| format!("The oracle's points: {points}"));
@@ -399,7 +388,7 @@ fn given(start: &Start) -> String {
 }
 
 /// What is known of the line beside the oracle's points, if anything.
-pub(crate) fn known(start: &Start) -> String {
+fn known(start: &Start) -> String {
     let bounds = start.bounds.unwrap_or_default();
     let slope = bounds.slope.map(|[a, b]| format!("it runs at {a} to {b} deg"));
     let intercept = bounds.intercept.map(|[a, b]| format!("it crosses x = 0 at z = {a} to {b}"));
@@ -412,7 +401,7 @@ pub(crate) fn known(start: &Start) -> String {
 }
 
 /// The tolerance and its parts, in words.
-pub(crate) fn tolerance(told: &ToleranceRecord) -> String {
+fn tolerance(told: &ToleranceRecord) -> String {
     format!(
         "The planner takes a label to be true of the straight line within {} of the reported position",
         told.words()
@@ -420,7 +409,7 @@ pub(crate) fn tolerance(told: &ToleranceRecord) -> String {
 }
 
 /// What planners are told of how often labels are true, if that is another thing.
-pub(crate) fn told(start: &Start) -> Option<String> {
+fn told(start: &Start) -> Option<String> {
     Some(match start.p_told? {
         PTold::Number(p) => format!("The planner takes it to be true with probability {p}."),
         PTold::Beta([a, b]) => {
@@ -433,7 +422,7 @@ pub(crate) fn told(start: &Start) -> Option<String> {
 }
 
 /// What labels have shown of how often they are true, in words.
-pub(crate) fn shown(&ReliabilityRecord { mean, deviation }: &ReliabilityRecord) -> String {
+fn shown(&ReliabilityRecord { mean, deviation }: &ReliabilityRecord) -> String {
     let [mean, deviation] = [mean, deviation].map(|it| fixed(it, 3));
     format!(
         "Labels are true with a probability of {mean} +- {deviation}, as they show themselves.\n"
@@ -441,7 +430,7 @@ pub(crate) fn shown(&ReliabilityRecord { mean, deviation }: &ReliabilityRecord) 
 }
 
 /// A boundary that is no fixed line, in words.
-pub(crate) fn boundary(record: &BoundaryRecord) -> String {
+fn boundary(record: &BoundaryRecord) -> String {
     let base = || record.line.and_then(|[a, b, c]| Line::from_coefficients(a, b, c));
     let base = base().map_or(String::new(), |line| {
         let words = self::line(&line.into());
@@ -478,13 +467,13 @@ pub(crate) fn boundary(record: &BoundaryRecord) -> String {
 }
 
 /// How the sensor fails, if it does.
-pub(crate) fn faults(start: &Start) -> Option<String> {
+fn faults(start: &Start) -> Option<String> {
     let each = start.sensor.iter().map(ToString::to_string).collect::<Vec<_>>();
     (!each.is_empty()).then(|| each.join("; "))
 }
 
 /// A label that no fault of the sensor spoils, at the beginning of a sentence.
-pub(crate) fn a_label(start: &Start) -> &'static str {
+fn a_label(start: &Start) -> &'static str {
     if start.sensor.is_empty() { "A label" } else { "A label that no fault spoils" }
 }
 

@@ -5,7 +5,6 @@
 
 mod cloud;
 mod drawing;
-mod messages;
 mod plotted;
 
 use std::collections::BTreeMap;
@@ -14,7 +13,10 @@ use std::iter;
 
 use anyhow::{Context as _, Result};
 use foxglove::Encode;
-use foxglove::messages::{FrameTransform, PointCloud, PoseInFrame, SceneUpdate};
+use foxglove::messages::{
+    FrameTransform, Point3, PointCloud, Pose, PoseInFrame, Quaternion, SceneUpdate, Timestamp,
+    Vector3,
+};
 use mcap::records::MessageHeader;
 use mcap::{Compression, WriteOptions, Writer};
 use prost::Message;
@@ -22,11 +24,39 @@ use prost::Message;
 use crate::mission::recording::Recording;
 use crate::mission::results::PoseRecord;
 use crate::report::flat;
-use crate::report::log::messages::{FRAME, ROBOT, time};
 use crate::report::log::plotted::Plot;
 use crate::report::page::scene::Flight;
 
 const PROTOBUF: &str = "protobuf";
+
+/// A place in the plane, metres.
+type Place = [f64; 2];
+
+/// The schema of our own message: name and descriptors.
+const STEP: (&str, &[u8]) = ("host_sim.Step", include_bytes!("../../../schemas/host_sim.Step.bin"));
+
+/// The frame of all places.
+const FRAME: &str = "field";
+
+/// The frame that moves with the robot.
+const ROBOT: &str = "robot";
+
+/// A place in the plane: its `z` is the viewer's `y`.
+const fn point([x, y]: Place) -> Point3 {
+    Point3 { x, y, z: 0.0 }
+}
+
+/// A pose in the plane; the heading in radians.
+fn pose([x, y]: Place, heading: f64) -> Pose {
+    let (z, w) = libm::sincos(heading / 2.0);
+    let orientation = Quaternion { x: 0.0, y: 0.0, z, w };
+    Pose { position: Some(Vector3 { x, y, z: 0.0 }), orientation: Some(orientation) }
+}
+
+/// This many seconds after the start.
+fn time(second: u32) -> Timestamp {
+    Timestamp::new(second, 0)
+}
 
 /// A log that is being written.
 struct Log {
@@ -109,7 +139,7 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     log.draw(scenes, 0, &drawing::begin(&flight), size)?;
     let stops = iter::once(&results.start.pose).chain(results.steps.iter().map(|it| &it.pose));
     for (second, at) in (0..).zip(stops) {
-        let pose = pose(second, at);
+        let pose = posed(second, at);
         log.write(frames, second, &transform(&pose))?;
         log.write(poses, second, &pose)?;
     }
@@ -123,9 +153,9 @@ pub fn mcap(recording: &Recording) -> Result<Vec<u8>> {
     Ok(log.writer.into_inner().into_inner())
 }
 
-fn pose(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
+fn posed(second: u32, &PoseRecord { x, z, heading }: &PoseRecord) -> PoseInFrame {
     let (timestamp, frame_id) = (Some(time(second)), FRAME.to_owned());
-    PoseInFrame { timestamp, frame_id, pose: Some(messages::pose([x, z], heading)) }
+    PoseInFrame { timestamp, frame_id, pose: Some(pose([x, z], heading)) }
 }
 
 /// The robot's frame at a pose.

@@ -1,11 +1,238 @@
 //! A report in one file: a page that shows missions step by step, side by side if there are several.
 //!
-//! The file contains everything, and the page may load nothing. A script draws the scenes. Without scripts the page
-//! shows the last pictures and the tables of steps.
+//! The file contains everything, and the page may load nothing: what it shows without a script, and the data from which a
+//! script draws the scenes.
 
-mod contents;
-mod markup;
 pub(crate) mod scene;
 mod words;
 
-pub use contents::{Chapter, Page};
+use std::fmt::Write as _;
+
+use nalgebra::Point2;
+use serde::Serialize;
+
+use crate::mission::recording::Recording;
+use crate::report::page::scene::{Flight, Moved, Scene};
+use crate::report::page::words::{arcs, minus, range, signed, small};
+use crate::report::text::fixed;
+
+const TEMPLATE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: [&str; 4] = [
+    include_str!("svg.js"),
+    include_str!("map.js"),
+    include_str!("charts.js"),
+    include_str!("page.js"),
+];
+
+/// A page of missions.
+#[derive(Debug, Serialize)]
+pub struct Page {
+    title: String,
+    chapters: Vec<Chapter>,
+}
+
+/// Missions that are shown side by side, in step.
+#[derive(Debug, Serialize)]
+pub struct Chapter {
+    title: String,
+    #[serde(skip)]
+    about: Vec<String>,
+    flights: Vec<Flight>,
+}
+
+impl Page {
+    /// A page under a title.
+    pub fn new(title: impl Into<String>, chapters: Vec<Chapter>) -> Self {
+        Self { title: title.into(), chapters }
+    }
+
+    /// The page as an HTML document.
+    pub fn html(&self) -> String {
+        filled(TEMPLATE, |slot| match slot {
+            "title" => escaped(&self.title),
+            "style" => STYLE.to_owned(),
+            "chapters" => {
+                (0..).zip(&self.chapters).map(|(number, it)| chapter(number, it)).collect()
+            }
+            "data" => data(self),
+            "script" => SCRIPT.join("\n"),
+            other => unreachable!("the template has no {other}"),
+        })
+    }
+}
+
+impl Chapter {
+    /// Missions in the same world, each with the name of who planned it.
+    pub fn new<'a>(
+        title: impl Into<String>,
+        flights: impl IntoIterator<Item = (&'a str, &'a Recording)>,
+    ) -> Self {
+        let flights: Vec<_> = flights.into_iter().collect();
+        let about = flights.first().map_or(Vec::new(), |(_, first)| words::about(first));
+        let shown = flights.into_iter().map(|(name, recording)| Flight::of(name, recording));
+        Self { title: title.into(), about, flights: shown.collect() }
+    }
+
+    /// The same with a note on how to read it.
+    #[must_use]
+    pub fn noting(mut self, note: Option<&str>) -> Self {
+        self.about.extend(note.map(str::to_owned));
+        self
+    }
+}
+
+/// A template with its slots, `{{name}}`, filled. What fills them is not looked at again.
+fn filled(template: &str, value: impl Fn(&str) -> String) -> String {
+    let mut parts = template.split("{{");
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (slot, rest) = part.split_once("}}").expect("a slot is closed");
+        text += &value(slot);
+        text += rest;
+    }
+    text
+}
+
+/// Text as it stands in HTML, also within an attribute.
+fn escaped(text: &str) -> String {
+    let mut safe = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            '\'' => safe += "&#39;",
+            other => safe.push(other),
+        }
+    }
+    safe
+}
+
+/// The scenes as JSON that cannot end the script element. A `<` occurs only within strings, where it may be escaped.
+fn data(page: &Page) -> String {
+    let json = serde_json::to_string(page).expect("a plain structure");
+    json.replace('<', "\\u003c")
+}
+
+fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> String {
+    let mut html = format!(
+        "<section class=\"chapter\" id=\"chapter-{number}\" aria-labelledby=\"chapter-{number}-title\">\n\
+         <h2 id=\"chapter-{number}-title\">{}</h2>\n<ul class=\"about\">\n",
+        escaped(title)
+    );
+    html.extend(about.iter().map(|fact| format!("<li>{}</li>\n", escaped(fact))));
+    html += "</ul>\n<div class=\"stage\" hidden></div>\n";
+    for flight in flights {
+        html += "<noscript>\n";
+        html += &still(flight);
+        html += "</noscript>\n";
+    }
+    html += "<section class=\"steps\">\n<h3>All steps</h3>\n";
+    for flight in flights {
+        html += &steps(flight);
+    }
+    html + "</section>\n</section>\n"
+}
+
+/// The picture of a mission's end.
+fn still(flight: &Flight) -> String {
+    // Within HTML it needs no name space, and a page that names no address can be seen to load none.
+    let svg = flight.picture.svg().replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner))
+}
+
+/// The steps as a table.
+fn steps(flight: &Flight) -> String {
+    const HEADS: [&str; 8] = [
+        "step",
+        "problem",
+        "motion",
+        "to, m",
+        "chance of +1",
+        "bits expected",
+        "read",
+        "bits so far",
+    ];
+    const OF_LINE: [&str; 3] = ["slopes left, deg", "intercepts left, m", "estimate off, deg"];
+    const OF_FRONT: [&str; 3] = ["front at, m", "half-width of the front, m", "front off, m"];
+    let known = if flight.follows { OF_FRONT } else { OF_LINE };
+    let planner = escaped(&flight.planner);
+    let mut html = format!(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Steps of {planner}\">\n\
+         <table class=\"told\">\n<caption>{planner}</caption>\n<thead><tr>"
+    );
+    for head in HEADS.into_iter().chain(known).chain(["cost so far"]) {
+        // Writing to a string cannot fail.
+        let _ = write!(html, "<th scope=\"col\">{head}</th>");
+    }
+    html += "</tr></thead>\n<tbody>\n";
+    for (number, scene) in flight.scenes.iter().enumerate() {
+        let _ = write!(html, "<tr><th scope=\"row\">{number}</th>");
+        for cell in cells(scene, flight.follows) {
+            let _ = write!(html, "<td>{}</td>", escaped(&cell));
+        }
+        html += "</tr>\n";
+    }
+    html + "</tbody>\n</table>\n</div>\n"
+}
+
+/// What a step has beside its number. Of a front it is where the front is known best, and not a line.
+fn cells(scene: &Scene, follows: bool) -> [String; 11] {
+    let none = || "\u{2013}".to_owned();
+    let place = |at: Point2<f64>| minus(&format!("({:.3}, {:.3})", at.x, at.y));
+    let motion = scene.motion.as_ref();
+    let expected = |of: fn(&Moved) -> Option<f64>| motion.and_then(of);
+    let wrong = |motion: &Moved| if motion.is_wrong { ", wrong" } else { "" };
+    let label = |motion: &Moved| Some(format!("{}{}", signed(motion.label?), wrong(motion)));
+    let off = scene.estimate.as_ref().and_then(|line| line.off_deg);
+    let front = scene.front.as_ref();
+    let known = if follows {
+        let off = front.and_then(|it| it.off);
+        [front.map(|it| place(it.at)), front.map(|it| small(it.half_width)), off.map(small)]
+    } else {
+        [Some(arcs(&scene.slopes)), Some(range(scene.intercepts)), off.map(small)]
+    };
+    let [first, second, third] = known.map(|it| it.unwrap_or_else(none));
+    [
+        motion.map_or_else(none, |it| it.problem.clone()),
+        motion.map_or_else(none, |it| it.motion.clone()),
+        place(scene.at),
+        expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
+        expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
+        motion.and_then(label).unwrap_or_else(none),
+        fixed(scene.bits, 2),
+        first,
+        second,
+        third,
+        format!("{:.1}", scene.cost),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fills_a_slot_is_not_filled_again() {
+        let page = filled("<h1>{{title}}</h1>{{data}}", |slot| match slot {
+            "title" => "{{data}}".to_owned(),
+            _ => "1".to_owned(),
+        });
+        assert_eq!(page, "<h1>{{data}}</h1>1");
+    }
+
+    #[test]
+    fn no_text_ends_its_script_or_its_element() {
+        let page = Page::new("</script><!--<script>&'\"", Vec::new());
+        let data = data(&page);
+        assert!(!data.contains('<'), "{data}");
+        let read: serde_json::Value = serde_json::from_str(&data).unwrap();
+        assert_eq!(read["title"], page.title);
+        assert_eq!(
+            escaped("<a href='x' id=\"y\">&"),
+            "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;"
+        );
+    }
+}

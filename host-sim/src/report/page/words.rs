@@ -1,5 +1,7 @@
 //! A step of a mission in words: what was planned, what was expected of it, what was read, what is known.
 
+use std::iter;
+
 use planner_core::AnyVehicle;
 use serde::Serialize;
 
@@ -9,9 +11,7 @@ use crate::mission::front::VertexRecord;
 use crate::mission::read_out::{Expectation, Knowledge};
 use crate::mission::recording::Recording;
 use crate::mission::results::{AUDIT, LineRecord, Results, StepResult};
-use crate::mission::vehicle::VehicleTable;
-use crate::report::{front, text};
-use crate::world::noise::limit;
+use crate::report::text;
 
 /// A sentence under its heading.
 #[derive(Clone, Debug, Serialize)]
@@ -70,79 +70,23 @@ fn on_front(vertex: &VertexRecord) -> String {
     ))
 }
 
-/// Why a mission ended, and what is promised of what it found.
-pub(crate) fn ended(results: &Results) -> Vec<Told> {
-    let why = text::why(&results.end.reason);
-    let promise = |goal| text::promise(goal, &results.end.reason).trim_end().to_owned();
-    let promise = results.end.goal.as_ref().map(promise);
-    let promise = promise.map_or(String::new(), |promise| format!(" {promise}"));
-    let mut ended = vec![Told::new("Ended", format!("{}.{promise}", sentence(why)))];
-    ended.extend(text::readings(results).map(|words| Told::new("Readings", words)));
-    if let Some(map) = &results.end.front {
-        ended.push(Told::new("Map", front::map(map, "step").trim_end().to_owned()));
-        ended.extend(front::remedy(map).map(|it| Told::new("To do", it)));
-    }
-    let shown = results.end.reliability.as_ref();
-    ended.extend(shown.map(|it| Told::new("Sensor", text::shown(it).trim_end().to_owned())));
-    let warning = text::warning(&results.end);
-    ended.extend(warning.map(|it| Told::new("Warning", it.trim_end().to_owned())));
-    let diagnosis = results.end.diagnosis.iter().flat_map(|it| text::diagnosed(it));
-    ended.extend(diagnosis.map(|(of, words)| Told::new(of, minus(&sentence(&words)))));
-    ended
+/// Why a mission ended, and what it came to.
+pub(crate) fn ended(results: &Results) -> impl Iterator<Item = Told> {
+    let why = ("Ended", format!("{}.", text::why(&results.end.reason)));
+    let all = iter::once(why).chain(text::ended(results));
+    all.map(|(of, words)| Told::new(of, minus(&sentence(words.trim_end()))))
 }
 
 /// What a mission is, before it begins.
 pub(crate) fn about(recording: &Recording) -> Vec<String> {
-    let Recording { mission, results, .. } = recording;
-    let start = &results.start;
-    let mut about = Vec::new();
-    if let Some(truth) = &start.truth {
-        about.push(format!("The true line, unknown to a planner: {}.", line(truth)));
-    }
-    if let Some(boundary) = &start.boundary {
-        let words = minus(&text::boundary(boundary));
-        about.push(format!("The true boundary, unknown to a planner: {words}."));
-    }
-    let faults = text::faults(start);
-    if let Some(faults) = &faults {
-        about.push(format!("The sensor fails, unknown to a planner: {}.", minus(faults)));
-    }
-    if start.labels_err {
-        let each = limit(start.p);
-        about.push(format!(
-            "{} is true with probability {}, so it tells {each:.3} bits at most on average.",
-            text::a_label(start),
-            start.p
-        ));
-        about.extend(text::told(start));
-    } else if faults.is_some() {
-        about.push("Planners take labels to be true.".to_owned());
-    } else {
-        about.push("Labels are true, so each tells one bit at most on average.".to_owned());
-    }
-    let radius = start.vehicle.as_ref().and_then(VehicleTable::radius);
-    about.extend(start.front.as_ref().map(|told| front::told(told, radius)));
-    let tolerance = mission.config.tolerance.metres();
-    if let Some(tolerance) = &start.tolerance {
-        about.push(format!("{}.", text::tolerance(tolerance)));
-    } else if tolerance > 0.0 {
-        about
-            .push(format!("Planners take reported positions to be off by up to {tolerance:.3} m."));
-    }
-    about
+    let beginning = text::beginning(&recording.results.start);
+    beginning.lines().filter(|it| !it.is_empty()).map(minus).collect()
 }
 
 fn given(results: &Results) -> String {
-    let points = results.start.oracle.iter();
-    let each = points.map(|s| format!("({}, {}) is {}", s.x, s.z, signed(s.label)));
-    let each = each.collect::<Vec<_>>().join(", ");
-    let known = text::known(&results.start);
-    [each, known]
-        .into_iter()
-        .filter(|it| !it.is_empty())
-        .map(|it| format!("{it}."))
-        .collect::<Vec<_>>()
-        .join(" ")
+    let given = text::given(&results.start);
+    let lines = given.lines().filter(|it| !it.is_empty()).map(|it| format!("{it}."));
+    minus(&lines.collect::<Vec<_>>().join(" "))
 }
 
 /// The planner's choice, and the likely reason for it.
@@ -282,8 +226,15 @@ pub(crate) fn small(size: f64) -> String {
 }
 
 /// With true minus signs, which screen readers say.
-fn minus(text: &str) -> String {
-    text.replace('-', "\u{2212}")
+pub(crate) fn minus(text: &str) -> String {
+    let (mut signed, mut before) = (String::with_capacity(text.len()), ' ');
+    for (at, it) in text.char_indices() {
+        let is_before_digit = || text[at + 1..].starts_with(|it: char| it.is_ascii_digit());
+        let is_sign = it == '-' && !before.is_alphanumeric() && before != '-' && is_before_digit();
+        signed.push(if is_sign { '\u{2212}' } else { it });
+        before = it;
+    }
+    signed
 }
 
 fn sentence(words: &str) -> String {
