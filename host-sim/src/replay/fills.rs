@@ -1,8 +1,10 @@
 //! Numbers that stand in a file where nothing was measured, and values and positions that look like such.
 
+use std::mem;
+
 use anyhow::{Error, Result};
 
-use crate::replay::rows::{Layout, Rows};
+use crate::replay::rows::{Layout, Recorded, Rows};
 use crate::world::extent::span;
 
 /// The usual ones, as loggers, GIS and servers write them.
@@ -35,14 +37,13 @@ impl Rows {
     /// # Errors
     /// The row, where the layout is strict.
     pub(crate) fn leave_out_unfixed(&mut self, layout: &Layout) -> Result<(), (usize, Error)> {
-        let is_far = |at: &&[f64; 2]| at.iter().any(|it| it.abs() > 1.0);
-        let far = self.positions.iter().filter(is_far).count();
-        if !self.is_geographic || 2 * far < self.positions.len() {
+        let is_far = |it: &&Recorded| it.position.iter().any(|it| it.abs() > 1.0);
+        let far = self.samples.iter().filter(is_far).count();
+        if !self.is_geographic || 2 * far < self.samples.len() {
             return Ok(());
         }
         let lacks = "found (0, 0), where receivers are before their first fix";
-        let unfixed = |at: &[f64; 2]| (*at == [0.0; 2]).then(|| lacks.to_owned());
-        self.leave_out(layout, self.positions.iter().map(unfixed).collect())
+        self.leave_out(layout, |it| (it.position == [0.0; 2]).then(|| lacks.to_owned()))
     }
 
     /// Leaves out the rows whose measured value is a usual fill value and lies outside all others, by more than their
@@ -51,47 +52,39 @@ impl Rows {
     /// # Errors
     /// The row and its value, where the layout is strict.
     pub(crate) fn leave_out_fills(&mut self, layout: &Layout) -> Result<(), (usize, Error)> {
-        let rest = span(self.values.iter().copied().filter(|it| !is_usual(*it)));
+        let values = || self.samples.iter().filter_map(|it| it.value);
+        let rest = span(values().filter(|it| !is_usual(*it)));
         let is_outside = |value: f64| rest[0] > rest[1] || ranges_away(value, rest) > 1.0;
-        let fill = |value: &f64| {
-            (is_usual(*value) && is_outside(*value))
-                .then(|| format!("label: found {value}, which stands for no value"))
-        };
-        self.leave_out(layout, self.values.iter().map(fill).collect())?;
-        for extreme in span(self.values.iter().copied()) {
-            let is_it = |value: &f64| value.total_cmp(&extreme).is_eq();
-            let others = span(self.values.iter().copied().filter(|it| !is_it(it)));
+        self.leave_out(layout, |it| {
+            let value = it.value.filter(|it| is_usual(*it) && is_outside(*it))?;
+            Some(format!("label: found {value}, which stands for no value"))
+        })?;
+        let values = || self.samples.iter().filter_map(|it| Some((it.line, it.value?)));
+        let mut odd = None;
+        for extreme in span(values().map(|it| it.1)) {
+            let is_it = |it: &(usize, f64)| it.1.total_cmp(&extreme).is_eq();
+            let others = span(values().filter(|it| !is_it(it)).map(|it| it.1));
             let away = ranges_away(extreme, others);
             if away > FAR && away.is_finite() {
-                let first = self.values.iter().position(is_it);
-                self.odd = first.map(|it| (self.lines[it], extreme, others)).or(self.odd);
+                odd = values().find(is_it).map(|it| (it.0, extreme, others));
             }
         }
+        self.odd = odd;
         Ok(())
     }
 
-    /// Leaves rows out, each if something is said that it lacks.
+    /// Leaves samples out, each if something is said that it lacks.
     fn leave_out(
         &mut self,
         layout: &Layout,
-        lacks: Vec<Option<String>>,
+        lacks: impl Fn(&Recorded) -> Option<String>,
     ) -> Result<(), (usize, Error)> {
-        fn kept<T>(of: &mut Vec<T>, is_left: &[bool]) {
-            let mut is_left = is_left.iter();
-            of.retain(|_| is_left.next() != Some(&true));
+        for it in mem::take(&mut self.samples) {
+            match lacks(&it) {
+                Some(lacks) => self.skip(layout, it.line, lacks).map_err(|why| (it.line, why))?,
+                None => self.samples.push(it),
+            }
         }
-        let is_left: Vec<_> = lacks.iter().map(Option::is_some).collect();
-        for (index, lacks) in lacks.into_iter().enumerate() {
-            let line = self.lines[index];
-            lacks
-                .map_or(Ok(()), |it| self.skip(layout, line, it))
-                .map_err(|error| (line, error))?;
-        }
-        kept(&mut self.positions, &is_left);
-        kept(&mut self.labels, &is_left);
-        kept(&mut self.values, &is_left);
-        kept(&mut self.lines, &is_left);
-        kept(&mut self.told, &is_left);
         Ok(())
     }
 }

@@ -127,16 +127,6 @@ impl Frame {
         ring.iter().chain(ring.first()).map(|at| self.degrees((*at).into())).collect()
     }
 
-    /// Whether positions lie on both sides of the 180th meridian.
-    ///
-    /// # Errors
-    /// Metres lie on none by themselves.
-    pub(crate) fn crosses_meridian(&self, all: impl Iterator<Item = Point2<f64>>) -> Result<bool> {
-        let lons = all.map(|at| Ok(self.degrees(at)?[0])).collect::<Result<Vec<_>>>()?;
-        let [least, most] = span(lons);
-        Ok(most - least > 180.0)
-    }
-
     /// A line in the file's metres; `None` where the file has none.
     pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
         let [x, z] = self.origin.unwrap_or_default();

@@ -226,12 +226,9 @@ impl Report for FrontMap {
     }
 
     fn geojson(&self) -> Result<String> {
-        let file = &self.file;
-        file.area_on_globe()?;
-        let mut features = self.mapped.features(|number| file.time(number))?;
-        for (index, sample) in file.samples.iter().enumerate() {
-            features.push(file.point(index, sample, None)?);
-        }
+        self.file.area_on_globe()?;
+        let mut features = self.mapped.features(|number| self.file.time(number))?;
+        features.extend(self.file.points(None)?);
         Ok(collection(features))
     }
 

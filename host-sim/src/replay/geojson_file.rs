@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::{Deserializer, Error, Value};
 
-use crate::replay::reading::{Reading, Row, is_missing};
+use crate::replay::reading::{Gap, Reading, is_missing};
 use crate::replay::rows::{Layout, Rows, Unit};
 
 /// The keys that tell `GeoJSON` from a trace.
@@ -39,8 +39,7 @@ pub(crate) fn parse(name: &str, text: &[u8], layout: &Layout) -> Result<Rows> {
 fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     let (name, layout) = (reading.name, reading.layout);
     let wanted = reading.label("GeoJSON")?;
-    let parsed =
-        serde_json::from_slice(text).or_else(|_| serde_json::from_slice(&with_nulls(text)));
+    let parsed = serde_json::from_slice(text).or_else(|_| serde_json::from_str(&with_nulls(text)));
     let mut file: Value = parsed
         .map_err(|error: Error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
     let kind = &file["type"];
@@ -66,16 +65,16 @@ fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     Ok(())
 }
 
-fn read(reading: &mut Reading, wanted: &str, feature: Value, number: usize) -> Result<Row> {
+fn read(reading: &mut Reading, wanted: &str, feature: Value, number: usize) -> Result<Gap> {
     let feature: Feature = serde_json::from_value(feature)
         .map_err(|error| anyhow!("expected a feature of GeoJSON: {error}"))?;
     let points = match feature.geometry.as_ref().map(|geometry| &geometry.value) {
         Some(GeometryValue::Point { coordinates }) => slice::from_ref(coordinates),
         Some(GeometryValue::MultiPoint { coordinates }) => &coordinates[..],
         Some(other) => {
-            return Ok(Row::Gap(format!("found a {}, which is no point", other.type_name())));
+            return Ok(Some(format!("found a {}, which is no point", other.type_name())));
         }
-        None => return Ok(Row::Gap("found no geometry".to_owned())),
+        None => return Ok(Some("found no geometry".to_owned())),
     };
     let text = match feature.property(wanted) {
         None | Some(Value::Null) => String::new(),
@@ -84,43 +83,35 @@ fn read(reading: &mut Reading, wanted: &str, feature: Value, number: usize) -> R
         Some(value) => bail!("label: found {value}, expected a word or a number"),
     };
     if is_missing(&text) {
-        return Ok(Row::Gap(format!("label: found {text:?} in {wanted}")));
+        return Ok(Some(format!("label: found {text:?}")));
     }
     let is_geographic = reading.rows.is_geographic;
     let position = |at: &Position| match at.as_slice() {
         [x, z, ..] => Some(if is_geographic { [*z, *x] } else { [*x, *z] }),
         _ => None,
     };
-    let Some(positions) = points.iter().map(position).collect() else {
-        return Ok(Row::Gap("found a point with less than two coordinates".to_owned()));
+    let Some(positions) = points.iter().map(position).collect::<Option<Vec<_>>>() else {
+        return Ok(Some("found a point with less than two coordinates".to_owned()));
     };
     if reading.layout.keeps {
         reading.told = feature.properties.unwrap_or_default();
     }
-    reading.samples(positions, &text, number)
+    reading.samples(&positions, &text, number)
 }
 
 /// A text that some programs write for `GeoJSON`: with NaN and Infinity, which JSON lacks, as null.
-fn with_nulls(text: &[u8]) -> Vec<u8> {
-    let mut out = Vec::with_capacity(text.len());
-    let (mut rest, mut is_quoted) = (text, false);
-    while let [first, others @ ..] = rest {
-        let word = [&b"NaN"[..], b"-Infinity", b"Infinity", b"-inf", b"inf", b"nan"];
-        let word = word.into_iter().find(|word| !is_quoted && rest.starts_with(word));
-        (rest, is_quoted) = match (word, *first) {
-            (Some(word), _) => {
-                out.extend(b"null");
-                (&rest[word.len()..], false)
-            }
-            (None, b'\\') if is_quoted => {
-                out.extend(&rest[..rest.len().min(2)]);
-                (&rest[rest.len().min(2)..], true)
-            }
-            (None, byte) => {
-                out.push(byte);
-                (others, is_quoted ^ (byte == b'"'))
-            }
-        };
+fn with_nulls(text: &[u8]) -> String {
+    let (mut out, mut is_quoted) = (String::new(), false);
+    let text = String::from_utf8_lossy(text);
+    for part in text.split_inclusive('"') {
+        let words = ["NaN", "-Infinity", "Infinity", "-inf", "inf", "nan"];
+        let bare =
+            |part: &str| words.iter().fold(part.to_owned(), |it, word| it.replace(word, "null"));
+        out += &if is_quoted { part.to_owned() } else { bare(part) };
+        // A quote after an odd number of backslashes is one of the string.
+        let before = part.trim_end_matches('"');
+        let escapes = before.len() - before.trim_end_matches('\\').len();
+        is_quoted ^= !is_quoted || escapes.is_multiple_of(2);
     }
     out
 }

@@ -3,7 +3,7 @@
 use anyhow::{Context as _, Result, anyhow, bail};
 use roxmltree::{Document, Node};
 
-use crate::replay::reading::{Reading, Row, is_missing};
+use crate::replay::reading::{Gap, Reading};
 use crate::replay::rows::{Layout, Rows};
 
 /// Elements that are points.
@@ -52,23 +52,14 @@ fn pass(reading: &mut Reading, text: &[u8]) -> Result<()> {
     Ok(())
 }
 
-fn read(reading: &mut Reading, wanted: &str, point: Node, line: usize) -> Result<Row> {
-    let mut position = [0.0; 2];
-    for (value, axis) in position.iter_mut().zip(["lat", "lon"]) {
-        let field = point.attribute(axis);
-        let field =
-            field.with_context(|| format!("found a point without {axis}, expected degrees"))?;
-        if is_missing(field.trim()) {
-            return Ok(Row::Gap(format!("{axis}: found {:?}", field.trim())));
-        }
-        *value = reading.number(axis, field.trim(), line)?;
-    }
-    let label = label(point, wanted).unwrap_or_default();
-    if is_missing(label) {
-        return Ok(Row::Gap(format!("label: found {label:?} in {wanted}")));
-    }
+fn read(reading: &mut Reading, wanted: &str, point: Node, line: usize) -> Result<Gap> {
+    let [lat, lon] = ["lat", "lon"].map(|axis| {
+        let field = point.attribute(axis).map(str::trim);
+        field.with_context(|| format!("found a point without {axis}, expected degrees"))
+    });
     reading.keep(elements(point));
-    reading.samples(vec![position], label, line)
+    let label = label(point, wanted).unwrap_or_default();
+    reading.sample(["lat", "lon", "label"], [lat?, lon?, label], line)
 }
 
 /// The text of the element called `wanted`: a child, or else one further below, as in extensions.

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::mission::front::VertexRecord;
 use crate::mission::join::{self, Joined, Place};
-use crate::mission::map::State;
+use crate::mission::map::{State, median_and_most};
 use crate::output::file;
 use crate::replay::Report;
 use crate::replay::crs::Crs;
@@ -93,16 +93,14 @@ impl JoinedMap {
         let met = is_of_steps && !files.iter().any(|it| it.is_joined);
         let met = met.then(|| Joined::closes_at(&robots)).flatten();
         let places: Vec<_> = joined.pieces.iter().flatten().collect();
-        let mut widths: Vec<_> = places.iter().map(|it| it.vertex.half_width).collect();
-        widths.sort_by(f64::total_cmp);
-        let width = |k: usize| widths.get(k).copied().unwrap_or(0.0);
+        let half_width = median_and_most(places.iter().map(|it| it.vertex.half_width), 1.0);
         let map = WholeRecord {
             state: if joined.is_closed { State::Closed } else { State::Followed },
             met,
             pieces: joined.pieces.len(),
             vertices: places.len(),
             metres: joined.metres(),
-            half_width: [width(places.len() / 2), width(places.len().saturating_sub(1))],
+            half_width: half_width.unwrap_or_default(),
         };
         let robot = |(robot, file): (usize, &MapFile)| RobotRecord {
             name: file.name.clone(),
@@ -157,16 +155,7 @@ impl Report for JoinedMap {
 
     fn geojson(&self) -> Result<String> {
         let Mapped { frame, pieces, .. } = &self.mapped;
-        if !frame.is_on_globe() {
-            bail!(
-                "--geojson: found positions in metres in {}, expected latitude and longitude, or the system of the metres \
-                 (--crs EPSG:...)",
-                self.robots[0].name
-            );
-        }
-        if frame.crosses_meridian(pieces.ways().flatten())? {
-            bail!("--geojson: the maps lie on both sides of the 180th meridian, expected one side");
-        }
+        frame.check_globe((&self.robots[0].name, ""), pieces.ways().flatten())?;
         Ok(collection(self.mapped.features(|_| None)?))
     }
 

@@ -315,10 +315,7 @@ impl Report for Replay {
                 features.push(feature(GeometryValue::new_line_string(ends), told));
             }
         }
-        for (index, sample) in self.file.samples.iter().enumerate() {
-            let disagrees = doubt.map(|it| it.disagreeing.binary_search(&index).is_ok());
-            features.push(self.file.point(index, sample, disagrees)?);
-        }
+        features.extend(self.file.points(doubt.map(|it| &*it.disagreeing))?);
         Ok(collection(features))
     }
 

@@ -6,7 +6,6 @@ use anyhow::{Context as _, Result};
 use geojson::{Feature, GeometryValue};
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::float::simplify::SimplifyShape as _;
-use nalgebra::Point2;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -15,7 +14,7 @@ use crate::replay::MOST_NAMED;
 use crate::replay::frame::Frame;
 use crate::replay::geojson::feature;
 use crate::report::picture::{Dot, Picture};
-use crate::report::pieces::{Pieces, ends};
+use crate::report::pieces::Pieces;
 
 /// A map of a front.
 pub(crate) struct Mapped {
@@ -112,12 +111,11 @@ impl Mapped {
     /// Metres have no place on a map by themselves.
     pub(crate) fn features(&self, time: impl Fn(usize) -> Option<Value>) -> Result<Vec<Feature>> {
         let (mut features, drawn) = (Vec::new(), self.drawn());
-        for (piece, vertices) in (1..).zip(&drawn.0) {
-            let band = band(vertices).into_iter();
-            let band = band.map(|polygon| {
-                polygon.iter().map(|it| self.frame.ring(it)).collect::<Result<Vec<_>>>()
-            });
-            let band = band.collect::<Result<Vec<_>>>()?;
+        for (piece, ground) in (1..).zip(drawn.ground()) {
+            let quads: Vec<_> = ground.map(|it| it.map(<[f64; 2]>::from).to_vec()).collect();
+            let band = quads.simplify_shape(FillRule::NonZero);
+            let band = band.iter().map(|it| it.iter().map(|it| self.frame.ring(it)).collect());
+            let band = band.collect::<Result<Vec<Vec<_>>>>()?;
             if !band.is_empty() {
                 let told = json!({ "kind": "band", "piece": piece, "probability": 0.9 });
                 features.push(feature(GeometryValue::new_multi_polygon(band), told));
@@ -148,51 +146,5 @@ impl Mapped {
             features.push(feature(at, told));
         }
         Ok(features)
-    }
-}
-/// The ground within the intervals of a piece: polygons that do not overlap, each by its rings, the outer one first and
-/// counter-clockwise.
-fn band(piece: &[(usize, VertexRecord)]) -> Vec<Vec<Vec<[f64; 2]>>> {
-    let quads = piece.windows(2).map(|pair| ring([ends(&pair[0].1), ends(&pair[1].1)]));
-    let quads: Vec<Vec<[f64; 2]>> = quads.map(|it| it.map(Into::into).to_vec()).collect();
-    quads.simplify_shape(FillRule::NonZero)
-}
-
-/// The four ends of two intervals as a ring, counter-clockwise. Of the three orders the one with the most area does not
-/// cross itself.
-fn ring([[a, b], [c, d]]: [[Point2<f64>; 2]; 2]) -> [Point2<f64>; 4] {
-    let area = |[p, q, r, s]: &[Point2<f64>; 4]| (r - p).perp(&(s - q));
-    let orders = [[a, b, d, c], [a, b, c, d], [a, c, b, d]];
-    let [p, q, r, s] = orders
-        .into_iter()
-        .max_by(|one, other| area(one).abs().total_cmp(&area(other).abs()))
-        .unwrap_or([a, b, d, c]);
-    if area(&[p, q, r, s]) < 0.0 { [s, r, q, p] } else { [p, q, r, s] }
-}
-
-#[cfg(test)]
-mod tests {
-    use rand::{RngExt as _, SeedableRng as _};
-    use rand_chacha::ChaCha8Rng;
-
-    use super::*;
-
-    /// Whether two stretches cross each other.
-    fn cross([a, b]: [Point2<f64>; 2], [c, d]: [Point2<f64>; 2]) -> bool {
-        let side = |p: Point2<f64>, q: Point2<f64>, r: Point2<f64>| (q - p).perp(&(r - p));
-        side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
-    }
-
-    #[test]
-    fn a_ring_of_four_places_does_not_cross_itself() {
-        let mut rng = ChaCha8Rng::seed_from_u64(5);
-        for trial in 0..10_000 {
-            let mut end = || Point2::from(rng.random::<[f64; 2]>());
-            let ends = [[end(), end()], [end(), end()]];
-            let [p, q, r, s] = ring(ends);
-            let crosses = cross([p, q], [r, s]) || cross([q, r], [s, p]);
-            assert!(!crosses, "trial {trial} of seed 5: {ends:?}");
-            assert!((r - p).perp(&(s - q)) >= 0.0, "trial {trial} of seed 5: clockwise");
-        }
     }
 }

@@ -1,14 +1,13 @@
 //! The rows of a file as they are read, whatever its kind: numbers, labels, and rows that lack a value.
 
 use anyhow::{Context as _, Error, Result, anyhow, bail};
-use planner_core::Label;
 use serde_json::Value;
 
 use crate::replay::columns::Columns;
 use crate::replay::degrees::degrees;
 use crate::replay::label_words::LabelWords;
 use crate::replay::numbers::Numbers;
-use crate::replay::rows::{Layout, Rows, Told};
+use crate::replay::rows::{Layout, Recorded, Rows, Told};
 
 /// Words that stand where nothing was measured, in upper or lower case.
 const MISSING: [&str; 20] = [
@@ -26,13 +25,8 @@ pub(crate) fn is_missing(field: &str) -> bool {
         || field.starts_with("-9999") && is_number()
 }
 
-/// A row.
-pub(crate) enum Row {
-    /// Samples: their positions, their label, and the value that it was measured as.
-    Samples(Vec<[f64; 2]>, Label, Option<f64>),
-    /// What it lacks, if that is a value.
-    Gap(String),
-}
+/// What a row lacks, if that is a value.
+pub(crate) type Gap = Option<String>;
 
 /// A file that is being read.
 pub(crate) struct Reading<'a> {
@@ -114,19 +108,12 @@ impl<'a> Reading<'a> {
     pub(crate) fn row(
         &mut self,
         number: usize,
-        read: impl FnOnce(&mut Self) -> Result<Row>,
+        read: impl FnOnce(&mut Self) -> Result<Gap>,
     ) -> Result<()> {
         self.told.clear();
-        let taken = read(self).and_then(|row| match row {
-            Row::Samples(positions, label, value) => {
-                for position in positions {
-                    self.rows.push(position, label, number);
-                    self.rows.values.extend(value);
-                    self.rows.told.extend(self.layout.keeps.then(|| self.told.clone()));
-                }
-                Ok(())
-            }
-            Row::Gap(lacks) => self.rows.skip(self.layout, number, lacks),
+        let taken = read(self).and_then(|gap| match gap {
+            Some(lacks) => self.rows.skip(self.layout, number, lacks),
+            None => Ok(()),
         });
         taken.map_err(|error| anyhow!("{}: {error}", self.rows.unit.place(self.name, number)))
     }
@@ -141,33 +128,46 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// The number in a field of this name.
-    pub(crate) fn number(&mut self, name: &str, field: &str, row: usize) -> Result<f64> {
-        let number = self.numbers.read(field, row);
-        number.with_context(|| format!("{name}: found {field:?}, expected a finite number"))
-    }
-
     /// The number in a field of this name, or its degrees if it is of an axis of the globe.
-    pub(crate) fn coordinate(&mut self, name: &str, field: &str, row: usize) -> Result<f64> {
-        if !self.rows.is_geographic {
-            return self.number(name, field, row);
-        }
-        let found = degrees(name, field).or_else(|| self.numbers.read(field, row));
-        found.with_context(|| {
-            let example = if name == "lat" { "54 12.06 N" } else { "10 48 7.2 E" };
-            format!("{name}: found {field:?}, expected degrees: a finite number, or as {example}")
-        })
+    fn coordinate(&mut self, name: &str, field: &str, row: usize) -> Result<f64> {
+        let degrees = degrees(name, field).filter(|_| self.rows.is_geographic);
+        let found = degrees.or_else(|| self.numbers.read(field, row));
+        let or = match name {
+            "lat" => "degrees: a finite number, or as 54 12.06 N",
+            "lon" => "degrees: a finite number, or as 10 48 7.2 E",
+            _ => "a finite number",
+        };
+        found.with_context(|| format!("{name}: found {field:?}, expected {or}"))
     }
 
-    /// Samples at positions, with the label in a field. A gap, if the field leaves the label open.
+    /// The sample of a row whose fields have these names: two of its position, and its label.
+    pub(crate) fn sample(
+        &mut self,
+        names: [&str; 3],
+        fields: [&str; 3],
+        row: usize,
+    ) -> Result<Gap> {
+        if let Some((name, field)) = names.iter().zip(fields).find(|it| is_missing(it.1)) {
+            return Ok(Some(format!("{name}: found {field:?}")));
+        }
+        let [a, b] = [0, 1].map(|k| self.coordinate(names[k], fields[k], row));
+        self.samples(&[[a?, b?]], fields[2], row)
+    }
+
+    /// Samples at positions, with the label in a field, which may leave it open.
     pub(crate) fn samples(
         &mut self,
-        positions: Vec<[f64; 2]>,
+        positions: &[[f64; 2]],
         field: &str,
-        row: usize,
-    ) -> Result<Row> {
-        let told = self.words.read(field, &mut self.numbers, row)?;
-        let open = || Row::Gap(format!("label: found {field:?}, which may be on both sides"));
-        Ok(told.map_or_else(open, |(label, value)| Row::Samples(positions, label, value)))
+        line: usize,
+    ) -> Result<Gap> {
+        let Some((label, value)) = self.words.read(field, &mut self.numbers, line)? else {
+            return Ok(Some(format!("label: found {field:?}, which may be on both sides")));
+        };
+        for &position in positions {
+            let told = self.told.clone();
+            self.rows.samples.push(Recorded { position, label, value, line, told });
+        }
+        Ok(None)
     }
 }

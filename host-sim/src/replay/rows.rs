@@ -80,22 +80,28 @@ pub(crate) struct Skipped {
     pub(crate) lacks: String,
 }
 
+/// A sample as it was recorded.
+#[derive(Debug)]
+pub(crate) struct Recorded {
+    /// Metres, or latitude and longitude.
+    pub(crate) position: [f64; 2],
+    pub(crate) label: Label,
+    /// What the label was measured as, of each sample or of none.
+    pub(crate) value: Option<f64>,
+    /// The line of the file on which it begins, or the number of its feature.
+    pub(crate) line: usize,
+    /// What else its row says, if that is kept.
+    pub(crate) told: Told,
+}
+
 /// Rows as they were recorded.
 #[derive(Debug, Default)]
 pub(crate) struct Rows {
-    /// Metres, or latitude and longitude.
-    pub(crate) positions: Vec<[f64; 2]>,
-    pub(crate) labels: Vec<Label>,
-    /// What the labels were measured as, of each row or of none.
-    pub(crate) values: Vec<f64>,
+    pub(crate) samples: Vec<Recorded>,
     /// A row whose value is far outside the range of all others: its place, the value, that range.
     pub(crate) odd: Option<(usize, f64, [f64; 2])>,
     /// Rows of an earlier time than the row before: how many, and the place of the first.
     pub(crate) backwards: Option<(usize, usize)>,
-    /// The line of the file on which each begins, or the number of its feature.
-    pub(crate) lines: Vec<usize>,
-    /// What else each row says, or none.
-    pub(crate) told: Vec<Told>,
     pub(crate) unit: Unit,
     pub(crate) skipped: Skipped,
     /// The rows whose labels are certain, whatever `p` is.
@@ -120,9 +126,7 @@ pub(crate) struct Traced {
 
 impl Rows {
     pub(crate) fn push(&mut self, position: [f64; 2], label: Label, line: usize) {
-        self.positions.push(position);
-        self.labels.push(label);
-        self.lines.push(line);
+        self.samples.push(Recorded { position, label, value: None, line, told: Told::new() });
     }
 
     /// Counts a row that is no sample in a strict file either, such as one of units or of titles.

@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
-use planner_core::{Label, Sample};
+use planner_core::Sample;
 use serde_json::Value;
 
 use crate::output::{kind, plain};
 use crate::replay::columns::Columns;
 use crate::replay::frame::{Frame, check_degrees};
-use crate::replay::rows::{Layout, Rows, Skipped, Told, Unit};
+use crate::replay::rows::{Layout, Recorded, Rows, Skipped, Told, Unit};
 use crate::replay::{encoding, geojson_file, gpx_file, table_file, trace_file};
 
 /// Samples in the order in which they were recorded.
@@ -65,11 +65,11 @@ impl SampleFile {
         Self::of(name, rows, layout)
     }
 
-    fn of(name: &str, mut rows: Rows, layout: &Layout) -> Result<Self> {
+    fn of(name: &str, rows: Rows, layout: &Layout) -> Result<Self> {
         let unit = rows.unit;
-        let at = |index: usize| unit.place(name, rows.lines[index]);
+        let at = |index: usize| unit.place(name, rows.samples[index].line);
         if let (true, Skipped { count, first: Some(line), lacks }) =
-            (rows.positions.is_empty(), &rows.skipped)
+            (rows.samples.is_empty(), &rows.skipped)
         {
             let row = unit.row();
             bail!(
@@ -77,7 +77,7 @@ impl SampleFile {
                 unit.name()
             );
         }
-        if rows.positions.is_empty() {
+        if rows.samples.is_empty() {
             bail!("{name}: found no {}s with a sample, expected some of both labels", unit.row());
         }
         if rows.is_geographic {
@@ -89,34 +89,34 @@ impl SampleFile {
             if let Some((index, why)) = swapped(&rows, layout) {
                 bail!("{}: {why}", at(index));
             }
-            for (index, position) in rows.positions.iter().enumerate() {
+            for (index, Recorded { position, .. }) in rows.samples.iter().enumerate() {
                 check_degrees(*position).map_err(|error| anyhow!("{}: {error}", at(index)))?;
             }
         }
-        if let (Some(threshold), [first, others @ ..]) = (layout.threshold, &rows.labels[..])
-            && others.iter().all(|label| label == first)
+        if let (Some(threshold), [first, others @ ..]) = (layout.threshold, &rows.samples[..])
+            && others.iter().all(|it| it.label == first.label)
         {
             let (count, side) =
-                (rows.labels.len(), if first.sign() > 0 { "above" } else { "not above" });
+                (rows.samples.len(), if first.label.sign() > 0 { "above" } else { "not above" });
             bail!(
                 "--threshold {threshold}: all {count} values of {name} are {side} it, expected values on both sides"
             );
         }
-        let frame = Frame::of(&rows.positions, rows.is_geographic, layout)
+        let positions: Vec<_> = rows.samples.iter().map(|it| it.position).collect();
+        let frame = Frame::of(&positions, rows.is_geographic, layout)
             .map_err(|error| anyhow!("{name}: {error}"))?;
-        let sample = |(index, (position, label)): (usize, (&[f64; 2], &Label))| {
-            let site = frame.site(*position).map_err(|error| anyhow!("{}: {error}", at(index)))?;
-            Ok(Sample { site, label: *label })
+        let sample = |(index, it): (usize, &Recorded)| {
+            let site =
+                frame.site(it.position).map_err(|error| anyhow!("{}: {error}", at(index)))?;
+            Ok(Sample { site, label: it.label })
         };
-        let both = rows.positions.iter().zip(&rows.labels);
-        let samples = both.enumerate().map(sample).collect::<Result<_>>()?;
-        (rows.positions, rows.labels) = <_>::default();
+        let samples = rows.samples.iter().enumerate().map(sample).collect::<Result<_>>()?;
         Ok(Self { name: name.to_owned(), samples, frame, unit, rows })
     }
 
     /// The line on which a sample begins, or the number of its feature.
     pub(crate) fn line(&self, index: usize) -> usize {
-        self.rows.lines[index]
+        self.rows.samples[index].line
     }
 
     /// What a report begins with: the headline, the rows that are no samples, a value far outside all others, rows out of
@@ -149,14 +149,14 @@ impl SampleFile {
 
     /// What else its row says.
     pub(crate) fn told(&self, index: usize) -> Told {
-        self.rows.told.get(index).cloned().unwrap_or_default()
+        self.rows.samples[index].told.clone()
     }
 
     /// The time of the row on a line, or of the feature with that number.
     pub(crate) fn time(&self, line: usize) -> Option<Value> {
-        let index = self.rows.lines.binary_search(&line).ok()?;
+        let index = self.rows.samples.binary_search_by_key(&line, |it| it.line).ok()?;
         let is_time = |name: &str| table_file::TIMES.iter().any(|it| it.eq_ignore_ascii_case(name));
-        self.rows.told.get(index)?.iter().find(|(name, _)| is_time(name)).map(|it| it.1.clone())
+        self.rows.samples[index].told.iter().find(|(name, _)| is_time(name)).map(|it| it.1.clone())
     }
 
     /// The file and the line of a sample.
@@ -167,15 +167,14 @@ impl SampleFile {
 
 /// The first row whose latitude looks like a longitude, with the message; `None` if the latitudes may be latitudes.
 fn swapped(rows: &Rows, layout: &Layout) -> Option<(usize, String)> {
-    let is_beyond = |at: &[f64; 2]| at[0].abs() > 90.0;
-    let beyond = rows.positions.iter().filter(|at| is_beyond(at)).count();
+    let is_beyond = |it: &Recorded| it.position[0].abs() > 90.0;
+    let beyond = rows.samples.iter().filter(|it| is_beyond(it)).count();
     // A few are mistakes in rows, which are reported one by one.
-    let all_would_do =
-        rows.positions.iter().all(|[lat, lon]| lat.abs() <= 360.0 && lon.abs() <= 90.0);
-    if 2 * beyond <= rows.positions.len() || !all_would_do {
+    let would_do = |it: &Recorded| matches!(it.position, [lat, lon] if lat.abs() <= 360.0 && lon.abs() <= 90.0);
+    if 2 * beyond <= rows.samples.len() || !rows.samples.iter().all(would_do) {
         return None;
     }
-    let index = rows.positions.iter().position(is_beyond)?;
+    let index = rows.samples.iter().position(is_beyond)?;
     let remedy = match (&rows.titles, rows.unit) {
         (Some([lat, lon]), _) => {
             let label = layout.columns.as_ref().and_then(Columns::label);
@@ -185,7 +184,7 @@ fn swapped(rows: &Rows, layout: &Layout) -> Option<(usize, String)> {
         (None, Unit::Feature) => "positions of GeoJSON have their longitude first".to_owned(),
         (None, Unit::Line) => "write them the other way round".to_owned(),
     };
-    let lat = rows.positions[index][0];
+    let lat = rows.samples[index].position[0];
     Some((
         index,
         format!("found the latitude {lat}: latitude and longitude look swapped; {remedy}"),

@@ -8,7 +8,7 @@ use csv::ByteRecord;
 use crate::replay::columns::{Columns, Places};
 use crate::replay::degrees::degrees;
 use crate::replay::numbers::Numbers;
-use crate::replay::reading::{Reading, Row, is_missing};
+use crate::replay::reading::{Reading, is_missing};
 use crate::replay::rows::{Layout, Rows};
 
 /// Characters between fields, by their names, in the order in which they are tried. A space may be several.
@@ -89,35 +89,12 @@ fn heading(text: &[u8], columns: &Columns, delimiter: Option<u8>) -> (u8, usize)
 pub(crate) const TIMES: [&str; 7] =
     ["time", "timestamp", "datetime", "date_time", "utc", "time_utc", "t"];
 
-/// Times that a column has, as far as they can be compared: numbers, or words that begin with a year.
-#[derive(Debug, Default)]
-struct Times {
-    column: Option<usize>,
-    last: String,
-}
-
-impl Times {
-    /// Those below the titles of a row.
-    fn below(titles: &ByteRecord, delimiter: u8) -> Self {
-        let is_time = |title: &[u8]| {
-            TIMES.iter().any(|it| it.as_bytes().eq_ignore_ascii_case(title.trim_ascii()))
-        };
-        Self { column: fields(titles, delimiter).position(is_time), last: String::new() }
-    }
-
-    /// Whether a row has an earlier time than the one before.
-    fn is_backwards(&mut self, row: &ByteRecord, delimiter: u8) -> bool {
-        let Some(column) = self.column else { return false };
-        let now = field(row, delimiter, column).trim().to_owned();
-        let numbers = [&self.last, &now].map(|it| it.parse::<f64>().ok());
-        let begins_with_a_year =
-            |it: &str| it.len() > 8 && it.bytes().take(4).all(|it| it.is_ascii_digit());
-        let is_earlier = match numbers {
-            [Some(last), Some(now)] => now < last,
-            _ => now.len() == self.last.len() && begins_with_a_year(&now) && now < self.last,
-        };
-        self.last = now;
-        is_earlier
+/// Whether a time is earlier than the one before, as far as they can be compared: numbers, or words that begin with a year.
+fn is_earlier(now: &str, last: &str) -> bool {
+    let begins_with_a_year = now.len() > 8 && now.bytes().take(4).all(|it| it.is_ascii_digit());
+    match [last, now].map(|it| it.parse::<f64>().ok()) {
+        [Some(last), Some(now)] => now < last,
+        _ => now.len() == last.len() && begins_with_a_year && now < last,
     }
 }
 
@@ -143,83 +120,58 @@ fn pass(
     (delimiter, above): (u8, usize),
 ) -> Result<()> {
     let name = reading.name;
-    let mut reader = reader(text, delimiter);
-    let mut lines = Lines { text, at: 0, line: 1 };
-    let mut row = ByteRecord::new();
-    let mut next = |row: &mut ByteRecord| -> Result<Option<usize>> {
-        let there = reader.read_byte_record(row).map_err(|error| anyhow!("{name}: {error}"))?;
-        Ok(there.then(|| lines.row(row)))
-    };
-    let mut line = next(&mut row)?;
-    for _ in 0..above {
-        line = next(&mut row)?;
-    }
-    let first = format!("{name}:{}", line.unwrap_or(1));
-    let places = places(&first, &row, columns, delimiter)?;
+    let (mut reader, mut lines) = (reader(text, delimiter), Lines { text, at: 0, line: 1 });
+    let rows = reader.byte_records().map(|row| {
+        let row = row.map_err(|error| anyhow!("{name}: {error}"))?;
+        anyhow::Ok((lines.row(&row), row))
+    });
+    let mut rows = rows.skip(above).peekable();
+    let (line, first) = rows.next().transpose()?.unwrap_or((1, ByteRecord::new()));
+    let places = places(&format!("{name}:{line}"), &first, columns, delimiter)?;
     reading.rows.is_geographic = places.is_geographic();
-    let (mut times, mut titles) = (Times::default(), None);
-    if places.has_header {
-        titles = Some(row.clone());
-        times = Times::below(&row, delimiter);
-        let title = |column: usize| field(&row, delimiter, column).trim().to_owned();
-        reading.rows.titles = Some(places.position().map(title));
-        line = next(&mut row)?;
-        let is_unit = |row: &ByteRecord, column: usize| {
-            let field = field(row, delimiter, column);
-            !is_missing(field.trim()) && !field.contains(|it: char| it.is_ascii_digit())
+    let text_in = |row: &ByteRecord, column| field(row, delimiter, column).trim().to_owned();
+    let (titles, data) =
+        if places.has_header { (Some(first), None) } else { (None, Some(Ok((line, first)))) };
+    let mut titled = Vec::new();
+    if let Some(titles) = &titles {
+        reading.rows.titles = Some(places.position().map(|column| text_in(titles, column)));
+        titled = (0..fields(titles, delimiter).count()).map(|it| text_in(titles, it)).collect();
+        let is_unit =
+            |field: String| !is_missing(&field) && !field.contains(|it: char| it.is_ascii_digit());
+        let is_of_units = |row: &Result<(usize, ByteRecord)>| {
+            let is = |row| places.position().into_iter().all(|it| is_unit(text_in(row, it)));
+            row.as_ref().is_ok_and(|(_, row)| is(row))
         };
-        let mut units = 0;
-        while let Some(number) = line
-            && units < UNITS
-            && places.position().into_iter().all(|column| is_unit(&row, column))
-        {
-            reading.rows.heading(number, "a row of units");
-            units += 1;
-            line = next(&mut row)?;
+        for _ in 0..UNITS {
+            let Some(Ok((line, _))) = rows.next_if(is_of_units) else { break };
+            reading.rows.heading(line, "a row of units");
         }
     }
-    while let Some(number) = line {
+    let is_time = |title: &String| TIMES.iter().any(|it| it.eq_ignore_ascii_case(title));
+    let (time, mut last) = (titled.iter().position(is_time), String::new());
+    for row in data.into_iter().chain(rows) {
+        let (line, row) = row?;
         // Of files that were written one after the other.
         if titles.as_ref() == Some(&row) {
-            reading.rows.heading(number, "the titles again");
-            line = next(&mut row)?;
+            reading.rows.heading(line, "the titles again");
             continue;
         }
-        if times.is_backwards(&row, delimiter) {
-            let (count, first) = reading.rows.backwards.unwrap_or((0, number));
-            reading.rows.backwards = Some((count + 1, first));
-        }
-        reading.row(number, |reading| {
-            if let Some(titles) = &titles {
-                let all = fields(titles, delimiter).map(String::from_utf8_lossy);
-                let beside = all.enumerate().filter(|it| !places.position().contains(&it.0));
-                reading.keep(beside.map(|(column, title)| {
-                    let text = field(&row, delimiter, column);
-                    (title.trim().to_owned(), text.trim().to_owned())
-                }));
+        if let Some(time) = time {
+            let now = text_in(&row, time);
+            if is_earlier(&now, &last) {
+                let (count, first) = reading.rows.backwards.unwrap_or((0, line));
+                reading.rows.backwards = Some((count + 1, first));
             }
-            read(reading, &row, places, delimiter, number)
+            last = now;
+        }
+        reading.row(line, |reading| {
+            let beside = titled.iter().enumerate().filter(|it| !places.position().contains(&it.0));
+            reading.keep(beside.map(|(column, title)| (title.clone(), text_in(&row, column))));
+            let fields = places.columns.map(|column| field(&row, delimiter, column));
+            reading.sample(places.names, fields.each_ref().map(|it| it.trim()), line)
         })?;
-        line = next(&mut row)?;
     }
     Ok(())
-}
-
-fn read(
-    reading: &mut Reading,
-    row: &ByteRecord,
-    places: Places,
-    delimiter: u8,
-    line: usize,
-) -> Result<Row> {
-    let fields = places.columns.map(|column| field(row, delimiter, column));
-    let texts = fields.each_ref().map(|field| field.trim());
-    let names = places.names;
-    if let Some((name, text)) = names.iter().zip(texts).find(|(_, text)| is_missing(text)) {
-        return Ok(Row::Gap(format!("{name}: found {text:?}")));
-    }
-    let [a, b] = [0, 1].map(|k| reading.coordinate(names[k], texts[k], line));
-    reading.samples(vec![[a?, b?]], texts[2], line)
 }
 
 const COMMENT: u8 = b'#';

@@ -56,7 +56,7 @@ fn take(rows: &mut Rows, record: Record<'_>, line: usize) -> Result<()> {
             }
             if let Some(read) = step.label.filter(|read| *read != 0) {
                 if step.trusted == Some(true) {
-                    rows.certain.push(rows.labels.len());
+                    rows.certain.push(rows.samples.len());
                 }
                 rows.push([step.pose.x, step.pose.z], label(read)?, line);
             }

@@ -41,29 +41,33 @@ fn alike(value: f64) -> Spread {
     Spread { median: value, p90: value, worst: value }
 }
 
+/// A measure of all planners: for each the rows, and of a row where it stands and what it comes to.
+fn panel<R>(
+    name: &'static str,
+    limit: Option<f64>,
+    planners: &[&[R]],
+    of: fn(&R) -> (u32, Spread),
+) -> Panel {
+    let of = planners.iter().map(|rows| rows.iter().map(of).collect()).collect();
+    Panel { name, is_error: !name.ends_with("bits"), of, limit }
+}
+
 impl Curves {
     /// Of planners whose labels are true.
     pub fn of_accuracy(summaries: &[accuracy::Summary]) -> Self {
-        let fields = summaries.first().map_or(0, |it| it.fields);
-        let panel = |name, is_error, of: fn(&accuracy::Row) -> Spread| Panel {
-            name,
-            is_error,
-            of: summaries
-                .iter()
-                .map(|it| it.rows.iter().map(|row| (row.step, of(row))).collect())
-                .collect(),
-            limit: None,
-        };
+        let rows: Vec<_> = summaries.iter().map(|it| &*it.rows).collect();
         Self {
             title: "How fast the boundary is found, with true labels".to_owned(),
-            note: note(fields),
+            note: note(summaries.first().map_or(0, |it| it.fields)),
             by: "steps",
             planners: summaries.iter().map(|it| it.algorithm.title().to_owned()).collect(),
             panels: vec![
-                panel("error of the slope, degrees", true, |row| row.centre_deg),
-                panel("misclassified area, %", true, |row| row.centre_misclassified.scaled(100.0)),
-                panel("information, bits", false, |row| {
-                    alike(row.bits_per_step * f64::from(row.step))
+                panel("error of the slope, degrees", None, &rows, |row| (row.step, row.centre_deg)),
+                panel("misclassified area, %", None, &rows, |row| {
+                    (row.step, row.centre_misclassified.scaled(100.0))
+                }),
+                panel("information, bits", None, &rows, |row| {
+                    (row.step, alike(row.bits_per_step * f64::from(row.step)))
                 }),
             ],
         }
@@ -72,16 +76,9 @@ impl Curves {
     /// Of planners whose labels may err.
     pub fn of_calibration(summaries: &[calibration::Summary]) -> Self {
         let first = summaries.first();
-        let panel = |name, is_error, of: fn(&calibration::Row) -> Spread| Panel {
-            name,
-            is_error,
-            of: summaries
-                .iter()
-                .map(|it| it.rows.iter().map(|row| (row.labels, of(row))).collect())
-                .collect(),
-            limit: first.map(|it| it.limit).filter(|_| !is_error),
-        };
+        let rows: Vec<_> = summaries.iter().map(|it| &*it.rows).collect();
         let p = first.map_or(1.0, |it| it.p);
+        let limit = first.map(|it| it.limit);
         Self {
             title: format!(
                 "How fast the boundary is found, with labels true {:.0} times in 100",
@@ -91,8 +88,8 @@ impl Curves {
             by: "labels",
             planners: summaries.iter().map(|it| it.algorithm.title().to_owned()).collect(),
             panels: vec![
-                panel("error of the slope, degrees", true, |row| row.mean_deg),
-                panel("information, bits", false, |row| alike(row.bits)),
+                panel("error of the slope, degrees", None, &rows, |row| (row.labels, row.mean_deg)),
+                panel("information, bits", limit, &rows, |row| (row.labels, alike(row.bits))),
             ],
         }
     }

@@ -119,20 +119,4 @@ mod tests {
             assert_eq!(lengths_found, lengths, "{known}");
         }
     }
-
-    #[test]
-    fn a_map_file_has_a_row_for_each_vertex() {
-        let file = map("#.#").csv("step", None, &[]).unwrap();
-        assert_eq!(
-            file,
-            "step,x,z,heading,curvature,half_width,turn_deviation,piece\n\
-             1,0.0,2.0,-0.5,0.0,0.75,0.25,1\n\
-             3,2.0,2.0,-0.5,0.0,0.75,0.25,2\n"
-        );
-        let degrees = |it: &VertexRecord| [it.x + 50.0, 10.0];
-        let file = map("#").csv("row", Some((["lat", "lon"], &degrees)), &[]).unwrap();
-        assert!(file.ends_with(",piece,lat,lon\n1,0.0,2.0,-0.5,0.0,0.75,0.25,1,50.0,10.0\n"));
-        // A map without vertices is a header alone.
-        assert_eq!(map("..").csv("row", None, &[]).unwrap().lines().count(), 1);
-    }
 }

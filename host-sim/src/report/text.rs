@@ -9,8 +9,8 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
 use crate::mission::from_nothing::SeekRecord;
 use crate::mission::results::{
-    AUDIT, AlarmRecord, End, EstimateRecords, FitRecord, LineRecord, PTold, ReliabilityRecord,
-    Results, Start, StepResult,
+    AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results, Start,
+    StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
@@ -66,18 +66,11 @@ pub const NAMES: [&str; 3] = ["centre of the version space", "maximum margin", B
 /// Their names where labels may err.
 const NOISY_NAMES: [&str; 3] = ["posterior mean", "margin of the likeliest", BISECTOR];
 
-/// The estimates with these names, the recommended one first.
-pub fn named(
-    [centre, margin, bisector]: [&'static str; 3],
-    estimates: &EstimateRecords,
-) -> [(&'static str, Option<LineRecord>); 3] {
-    [(centre, estimates.centre), (margin, estimates.maximum_margin), (bisector, estimates.bisector)]
-}
-
 /// Names and lines of a mission's estimates, the recommended one first.
 pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
-    let names = if results.end.best.is_some() { NOISY_NAMES } else { NAMES };
-    named(names, &results.end.estimates)
+    let [centre, margin, bisector] = if results.end.best.is_some() { NOISY_NAMES } else { NAMES };
+    let it = &results.end.estimates;
+    [(centre, it.centre), (margin, it.maximum_margin), (bisector, it.bisector)]
 }
 
 /// The same, with the one that the paper prints first. For true labels it is the bisector. For labels that may err it

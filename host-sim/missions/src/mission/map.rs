@@ -244,7 +244,7 @@ fn along(from: &VertexRecord, to: &VertexRecord) -> f64 {
 }
 
 /// The median, and the number below which so large a share lies.
-fn median_and_most(numbers: impl Iterator<Item = f64>, share: f64) -> Option<[f64; 2]> {
+pub fn median_and_most(numbers: impl Iterator<Item = f64>, share: f64) -> Option<[f64; 2]> {
     let mut sorted: Vec<_> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().checked_sub(1)?;

@@ -6,7 +6,7 @@ use foxglove::messages::{
     Vector3,
 };
 
-use crate::report::log::{Place, pose};
+use crate::report::log::messages::{Place, pose};
 
 /// Distance between two points of a line, as a share of the area's size.
 const SPACING: f64 = 0.004;

@@ -14,7 +14,7 @@ use planner_core::Label;
 
 use crate::report::bands::Band;
 use crate::report::ground::Ground;
-use crate::report::log::{FRAME, ROBOT, point, pose, time};
+use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
 use crate::report::page::scene::{Flight, Scene, SeenFront};
 use crate::report::style::{self, ESTIMATE, FRONT, KEEP_OUT, PATH, SHADES, Stroke};
 

@@ -8,7 +8,7 @@ use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorSet, Oneo
 use serde_json::json;
 
 use crate::report::flat::Row;
-use crate::report::log::{STEP, time};
+use crate::report::log::messages::{STEP, time};
 use crate::report::page::scene::Scene;
 
 /// The fields of a message, one for each number.

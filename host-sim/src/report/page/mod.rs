@@ -13,8 +13,8 @@ use serde::Serialize;
 
 use crate::mission::recording::Recording;
 use crate::report::page::scene::{Flight, Moved, Scene};
-use crate::report::page::words::{arcs, minus, range, signed, small};
-use crate::report::text::fixed;
+use crate::report::page::words::{minus, signed, small};
+use crate::report::text;
 
 const TEMPLATE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
@@ -192,9 +192,9 @@ fn cells(scene: &Scene, follows: bool) -> [String; 11] {
         let off = front.and_then(|it| it.off);
         [front.map(|it| place(it.at)), front.map(|it| small(it.half_width)), off.map(small)]
     } else {
-        [Some(arcs(&scene.slopes)), Some(range(scene.intercepts)), off.map(small)]
+        [Some(text::arcs(&scene.slopes)), Some(text::range(scene.intercepts)), off.map(small)]
     };
-    let [first, second, third] = known.map(|it| it.unwrap_or_else(none));
+    let [first, second, third] = known.map(|it| it.map_or_else(none, |it| minus(&it)));
     [
         motion.map_or_else(none, |it| it.problem.clone()),
         motion.map_or_else(none, |it| it.motion.clone()),
@@ -202,7 +202,7 @@ fn cells(scene: &Scene, follows: bool) -> [String; 11] {
         expected(|it| it.chance).map_or_else(none, |it| format!("{:.0} %", 100.0 * it)),
         expected(|it| it.expected).map_or_else(none, |bits| format!("{bits:.3}")),
         motion.and_then(label).unwrap_or_else(none),
-        fixed(scene.bits, 2),
+        text::fixed(scene.bits, 2),
         first,
         second,
         third,

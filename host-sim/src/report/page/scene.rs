@@ -6,6 +6,7 @@ use nalgebra::Point2;
 use planner_core::{Line, Sample, Site, Step};
 use serde::Serialize;
 
+use crate::mission::definition::Mission;
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, PoseRecord, StepResult};
@@ -205,11 +206,11 @@ impl Flight {
         let picture = Picture::of(planner, recording);
         let [(estimate, _), ..] = text::estimates(results);
         let given = |s: &Sample| (rounding.place(s.site.into()), s.label.sign());
-        let stage = Stage { recording, rounding, estimate };
         let taken = steps.iter().zip(&results.steps).zip(&picture.stops).map(Some);
         let mut scenes = Vec::new();
         for (belief, taken) in recording.known().zip(iter::once(None).chain(taken)) {
-            scenes.push(stage.scene(belief, taken, scenes.last()));
+            let scene = Scene::of((recording, rounding, estimate), belief, taken, scenes.last());
+            scenes.push(scene);
         }
         if let Some(last) = scenes.last_mut() {
             last.told.extend(words::ended(results));
@@ -234,18 +235,14 @@ impl Flight {
 /// A step that was taken, what came of it, and its end.
 type Taken<'a> = ((&'a Step, &'a StepResult), &'a Stop);
 
-/// The mission that scenes are made of.
-struct Stage<'a> {
-    recording: &'a Recording,
-    rounding: Rounding,
-    /// What the recommended estimate is called.
-    estimate: &'static str,
-}
-
-impl Stage<'_> {
-    /// The scene after a step and the scene before it, or at the start.
-    fn scene(&self, belief: &dyn ReadOut, taken: Option<Taken>, before: Option<&Scene>) -> Scene {
-        let &Self { recording, rounding, estimate } = self;
+impl Scene {
+    /// The scene after a step and the scene before it, or at the start. `estimate` is what the recommended one is called.
+    fn of(
+        (recording, rounding, estimate): (&Recording, Rounding, &str),
+        belief: &dyn ReadOut,
+        taken: Option<Taken>,
+        before: Option<&Self>,
+    ) -> Self {
         let mission = &recording.mission;
         let area = mission.config.area;
         let knowledge = belief.knowledge();
@@ -262,8 +259,8 @@ impl Stage<'_> {
         let told = words::stage(recording, read, (&knowledge, bits), (estimate, centre.as_ref()));
         let start = recording.results.start.pose;
         let PoseRecord { x, z, heading } = step.map_or(start, |step| step.pose);
-        Scene {
-            motion: taken.map(|taken| self.moved(taken)),
+        Self {
+            motion: taken.map(|taken| Moved::of(mission, rounding, taken)),
             at: rounding.place(Point2::new(x, z)),
             heading,
             ground: rounding.ground(Ground::of(belief, area)),
@@ -280,15 +277,16 @@ impl Stage<'_> {
             told,
         }
     }
+}
 
-    fn moved(&self, ((step, result), stop): Taken) -> Moved {
-        let place = |at: Point2<f64>| self.rounding.place(at);
+impl Moved {
+    fn of(mission: &Mission, rounding: Rounding, ((step, result), stop): Taken) -> Self {
+        let place = |at: Point2<f64>| rounding.place(at);
         let [target, end] = [step.motion.target.site, step.pose.site];
-        Moved {
-            sought: !self.recording.mission.algorithm.seeks_line()
-                && result.problem.as_deref() == Some("seek"),
+        Self {
+            sought: !mission.algorithm.seeks_line() && result.problem.as_deref() == Some("seek"),
             problem: words::problem(result),
-            motion: words::motion(&self.recording.mission, result),
+            motion: words::motion(mission, result),
             way: stop.way.iter().copied().map(place).collect(),
             target: (target != end).then(|| place(target.into())),
             truly: stop.truly.map(place),

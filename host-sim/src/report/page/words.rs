@@ -199,16 +199,6 @@ pub(crate) fn line(record: &LineRecord) -> String {
     minus(&words.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// Slope intervals in degrees.
-pub(crate) fn arcs(intervals: &[[f64; 2]]) -> String {
-    minus(&text::arcs(intervals))
-}
-
-/// A range of intercepts in metres.
-pub(crate) fn range(intercepts: Option<[f64; 2]>) -> String {
-    minus(&text::range(intercepts))
-}
-
 /// A label with its sign, as one reads it.
 pub(crate) fn signed(label: i8) -> String {
     minus(&format!("{label:+}")).replace("+0", "0")
