@@ -75,18 +75,18 @@ impl JoinedMap {
             let [name, found, expected] = [&other.name, other.kind(), first.kind()];
             bail!("{name}: found {found}, expected {expected}, as {} has them", first.name);
         }
-        if let (Some(crs), true) = (crs, first.is_geographic) {
+        if let (Some(crs), true) = (crs, first.is_geographic()) {
             let name = &first.name;
             bail!("--crs {crs}: found latitude and longitude in {name}, expected metres");
         }
         let rows = || files.iter().flat_map(|file| file.rows.iter().map(move |row| (file, row)));
-        for (file, row) in rows().filter(|_| first.is_geographic) {
+        for (file, row) in rows().filter(|_| first.is_geographic()) {
             check_degrees(row.position)
                 .map_err(|error| anyhow!("{}:{}: {error}", file.name, row.line))?;
         }
         let positions: Vec<_> = rows().map(|(_, row)| row.position).collect();
         let layout = Layout { crs: crs.cloned(), ..Layout::default() };
-        let frame = Frame::of(&positions, first.is_geographic, &layout)?;
+        let frame = Frame::of(&positions, first.is_geographic(), &layout)?;
         let robots = files.iter().map(|it| in_frame(it, &frame)).collect::<Result<Vec<_>>>()?;
         let joined = Joined::of(&robots);
         let is_of_steps = files.iter().all(|it| it.numbers == "step");

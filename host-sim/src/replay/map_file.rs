@@ -7,14 +7,7 @@ use anyhow::{Context as _, Result, anyhow, bail};
 
 use crate::mission::front::VertexRecord;
 use crate::output::{kind, plain};
-use crate::report::pieces::ROBOT;
-
-/// The columns of all map files, but for the number.
-const COLUMNS: [&str; 7] =
-    ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
-
-/// Columns of coordinates of the samples' file: of the globe, and of metres.
-const OWN: [[&str; 2]; 2] = [["lat", "lon"], ["file_x", "file_z"]];
+use crate::report::pieces::{OWN, ROBOT, TITLES};
 
 /// A map as it was read.
 pub(crate) struct MapFile {
@@ -22,10 +15,8 @@ pub(crate) struct MapFile {
     pub(crate) name: String,
     /// `step` or `row`.
     pub(crate) numbers: &'static str,
-    /// Whether its positions are latitude and longitude.
-    pub(crate) is_geographic: bool,
-    /// Whether its positions are those of the samples' file, and not metres about an origin that it does not name.
-    pub(crate) is_own: bool,
+    /// The titles of the coordinates of the samples' file, unless positions are metres about an origin that is not named.
+    own: Option<[&'static str; 2]>,
     /// Whether it is joined from others: then its numbers are those of several robots.
     pub(crate) is_joined: bool,
     /// The vertices in their order.
@@ -57,7 +48,7 @@ impl MapFile {
         let titles = reader.headers().with_context(|| format!("{name}:1"))?.clone();
         let at = |title: &str| titles.iter().position(|it| it == title);
         let numbers = if at("step").is_some() { "step" } else { "row" };
-        if let Some(title) = COLUMNS.into_iter().chain([numbers]).find(|it| at(it).is_none()) {
+        if let Some(title) = TITLES.into_iter().chain([numbers]).find(|it| at(it).is_none()) {
             bail!(
                 "{name}: found no column {title}, expected the map of a front, as --map writes it"
             );
@@ -77,17 +68,21 @@ impl MapFile {
         if rows.is_empty() {
             bail!("{name}: found a map without vertices, expected one whose robot found the front");
         }
-        let (is_geographic, is_own) = (own == Some(OWN[0]), own.is_some());
         let is_joined = at(ROBOT).is_some();
-        Ok(Self { name, numbers, is_geographic, is_own, is_joined, rows })
+        Ok(Self { name, numbers, own, is_joined, rows })
+    }
+
+    /// Whether its positions are latitude and longitude.
+    pub(crate) fn is_geographic(&self) -> bool {
+        self.own == Some(OWN[0])
     }
 
     /// What its positions are.
-    pub(crate) const fn kind(&self) -> &'static str {
-        match (self.is_geographic, self.is_own) {
-            (true, _) => "latitude and longitude",
-            (_, true) => "metres of another file (file_x, file_z)",
-            _ => "metres (x, z)",
+    pub(crate) fn kind(&self) -> &'static str {
+        match self.own {
+            None => "metres (x, z)",
+            Some(_) if self.is_geographic() => "latitude and longitude",
+            Some(_) => "metres of another file (file_x, file_z)",
         }
     }
 }

@@ -14,7 +14,7 @@ use crate::replay::MOST_NAMED;
 use crate::replay::frame::Frame;
 use crate::replay::geojson::feature;
 use crate::report::picture::{Dot, Picture};
-use crate::report::pieces::Pieces;
+use crate::report::pieces::{OWN, Pieces};
 
 /// A map of a front.
 pub(crate) struct Mapped {
@@ -56,7 +56,7 @@ impl Mapped {
 
     /// The map as a file of vertices. If positions have an origin, each vertex has its coordinates in the file as well.
     pub(crate) fn csv(&self) -> Result<String> {
-        let titles = if self.frame.is_geographic() { ["lat", "lon"] } else { ["file_x", "file_z"] };
+        let titles = OWN[usize::from(!self.frame.is_geographic())];
         let recorded = |it: &VertexRecord| self.frame.recorded(it.at());
         let own = self.frame.origin.map(|_| (titles, &recorded as _));
         self.pieces.csv(self.numbers, own, &self.robots)

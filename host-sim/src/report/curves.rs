@@ -16,6 +16,9 @@ const LEAST: f64 = 1e-9;
 /// The line of the most that labels can carry.
 const LIMIT: Stroke = Stroke { class: "limit", colour: "#000000", width: 1.2, dashes: "2 3" };
 
+/// The measure that grows. The others are errors, drawn by powers of ten, with their spread.
+const BITS: &str = "information, bits";
+
 /// Curves of several planners.
 #[derive(Clone, Debug)]
 pub struct Curves {
@@ -30,7 +33,6 @@ pub struct Curves {
 #[derive(Clone, Debug)]
 struct Panel {
     name: &'static str,
-    is_error: bool,
     /// For each planner, the numbers of steps or labels with the spread after each.
     of: Vec<Vec<(u32, Spread)>>,
     /// A bound, for each step or label.
@@ -49,7 +51,7 @@ fn panel<R>(
     of: fn(&R) -> (u32, Spread),
 ) -> Panel {
     let of = planners.iter().map(|rows| rows.iter().map(of).collect()).collect();
-    Panel { name, is_error: !name.ends_with("bits"), of, limit }
+    Panel { name, of, limit }
 }
 
 impl Curves {
@@ -66,7 +68,7 @@ impl Curves {
                 panel("misclassified area, %", None, &rows, |row| {
                     (row.step, row.centre_misclassified.scaled(100.0))
                 }),
-                panel("information, bits", None, &rows, |row| {
+                panel(BITS, None, &rows, |row| {
                     (row.step, alike(row.bits_per_step * f64::from(row.step)))
                 }),
             ],
@@ -89,7 +91,7 @@ impl Curves {
             planners: summaries.iter().map(|it| it.algorithm.title().to_owned()).collect(),
             panels: vec![
                 panel("error of the slope, degrees", None, &rows, |row| (row.labels, row.mean_deg)),
-                panel("information, bits", limit, &rows, |row| (row.labels, alike(row.bits))),
+                panel(BITS, limit, &rows, |row| (row.labels, alike(row.bits))),
             ],
         }
     }
@@ -131,7 +133,7 @@ impl Panel {
         let all = || self.of.iter().flatten();
         let last = all().map(|(at, _)| *at).max().unwrap_or(1);
         let highest = all().map(|(_, it)| it.p90).fold(0.0, f64::max);
-        let z = if self.is_error {
+        let z = if self.name != BITS {
             let lowest = all().map(|(_, it)| it.median.max(LEAST)).fold(f64::INFINITY, f64::min);
             let power = |it: f64| libm::pow(10.0, it);
             let least = power(libm::floor(libm::log10(lowest.min(highest.max(LEAST)))));
@@ -148,7 +150,7 @@ impl Panel {
         let spots = |of: &[(u32, Spread)], pick: fn(&Spread) -> f64| -> Vec<Spot> {
             of.iter().map(|(at, it)| axes.at(Point2::new(f64::from(*at), pick(it)))).collect()
         };
-        if self.is_error {
+        if self.name != BITS {
             for (k, of) in self.of.iter().enumerate().filter(|(_, of)| of.len() > 1) {
                 let mut ring = spots(of, |it| it.median);
                 let edge = spots(of, |it| it.p90);

@@ -12,6 +12,13 @@ use crate::mission::results::Results;
 #[derive(Clone, Debug, Default)]
 pub struct Pieces(pub(crate) Vec<Vec<(usize, VertexRecord)>>);
 
+/// The columns of all map files, after the number of the step or row.
+pub(crate) const TITLES: [&str; 7] =
+    ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
+
+/// Those of coordinates of the samples' file: of the globe, or of metres.
+pub(crate) const OWN: [[&str; 2]; 2] = [["lat", "lon"], ["file_x", "file_z"]];
+
 /// The title of the column that says whose a vertex is.
 pub(crate) const ROBOT: &str = "robot";
 
@@ -61,8 +68,6 @@ impl Pieces {
     /// # Errors
     /// When a row could not be written.
     pub fn csv(&self, number: &str, own: Option<Own<'_>>, robots: &[usize]) -> Result<String> {
-        const TITLES: [&str; 7] =
-            ["x", "z", "heading", "curvature", "half_width", "turn_deviation", "piece"];
         let mut writer = csv::Writer::from_writer(Vec::new());
         let titles = own.iter().flat_map(|(titles, _)| titles);
         let titles = titles.chain((!robots.is_empty()).then_some(&ROBOT));
