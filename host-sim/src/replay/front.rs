@@ -19,7 +19,7 @@ use crate::output::notes::progress;
 use crate::replay::answer::Trust;
 use crate::replay::frame::Frame;
 use crate::replay::geojson::collection;
-use crate::replay::mapped::{Mapped, MappedRecord};
+use crate::replay::placed_map::{PlaceRecord, PlacedMap};
 use crate::replay::rows::{Layout, Skipped};
 use crate::replay::sample_file::SampleFile;
 use crate::replay::track::RecordedTrack;
@@ -38,7 +38,7 @@ const MOST: usize = 150;
 pub struct FrontMap {
     file: SampleFile,
     facts: Facts,
-    mapped: Mapped,
+    mapped: PlacedMap,
 }
 
 /// What was told, and what following the front came to.
@@ -62,14 +62,14 @@ struct Facts {
 
 /// The front along a track.
 #[derive(Serialize)]
-struct Record<'a> {
+struct FrontRecord<'a> {
     samples: usize,
     skipped: &'a Skipped,
     #[serde(flatten)]
     facts: &'a Facts,
     #[serde(flatten)]
     frame: &'a Frame,
-    vertices: Vec<MappedRecord>,
+    vertices: Vec<PlaceRecord>,
 }
 
 impl FrontMap {
@@ -117,7 +117,7 @@ impl FrontMap {
             alarms,
         };
         let (frame, pieces) = (file.frame.clone(), Pieces(pieces(&after)));
-        let mapped = Mapped { frame, numbers, pieces, robots: Vec::new(), is_round: false };
+        let mapped = PlacedMap { frame, numbers, pieces, robots: Vec::new(), is_round: false };
         Ok(Self { file, facts, mapped })
     }
 
@@ -194,7 +194,7 @@ impl Report for FrontMap {
     }
 
     fn json(&self) -> String {
-        file::json(&Record {
+        file::json(&FrontRecord {
             samples: self.file.samples.len(),
             skipped: &self.file.rows.skipped,
             facts: &self.facts,

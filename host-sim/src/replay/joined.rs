@@ -15,7 +15,7 @@ use crate::replay::crs::Crs;
 use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::geojson::collection;
 use crate::replay::map_file::MapFile;
-use crate::replay::mapped::{Mapped, MappedRecord};
+use crate::replay::placed_map::{PlaceRecord, PlacedMap};
 use crate::replay::rows::Layout;
 use crate::report::front::{extent, within};
 use crate::report::pieces::Pieces;
@@ -25,17 +25,17 @@ pub struct JoinedMap {
     /// In the order in which they were named: the first is that of robot 1.
     robots: Vec<RobotRecord>,
     map: WholeRecord,
-    mapped: Mapped,
+    mapped: PlacedMap,
 }
 
 /// A joined map.
 #[derive(Serialize)]
-struct Record<'a> {
+struct JoinedRecord<'a> {
     robots: &'a [RobotRecord],
     map: &'a WholeRecord,
     #[serde(flatten)]
     frame: &'a Frame,
-    vertices: Vec<MappedRecord>,
+    vertices: Vec<PlaceRecord>,
 }
 
 /// The map of a robot.
@@ -109,7 +109,7 @@ impl JoinedMap {
             kept: places.iter().filter(|it| it.robot == robot).count(),
         };
         let numbered = |it: &Vec<Place>| it.iter().map(|it| (it.number, it.vertex)).collect();
-        let mapped = Mapped {
+        let mapped = PlacedMap {
             frame,
             numbers: if is_of_steps { "step" } else { "row" },
             pieces: Pieces(joined.pieces.iter().map(numbered).collect()),
@@ -141,7 +141,7 @@ impl Report for JoinedMap {
     fn json(&self) -> String {
         let Self { robots, map, mapped } = self;
         let (frame, vertices) = (&mapped.frame, mapped.vertices());
-        file::json(&Record { robots, map, frame, vertices })
+        file::json(&JoinedRecord { robots, map, frame, vertices })
     }
 
     /// Of very many vertices it shows some.
@@ -154,7 +154,7 @@ impl Report for JoinedMap {
     }
 
     fn geojson(&self) -> Result<String> {
-        let Mapped { frame, pieces, .. } = &self.mapped;
+        let PlacedMap { frame, pieces, .. } = &self.mapped;
         frame.check_globe((&self.robots[0].name, ""), pieces.ways().flatten())?;
         Ok(collection(self.mapped.features(|_| None)?))
     }

@@ -39,7 +39,7 @@ pub struct Replay {
 
 /// What samples determine.
 #[derive(Serialize)]
-struct Record<'a> {
+struct SamplesRecord<'a> {
     samples: usize,
     skipped: &'a Skipped,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -234,7 +234,7 @@ impl Report for Replay {
             },
         });
         let in_file = || self.estimates().and_then(|line| self.in_file(&line));
-        file::json(&Record {
+        file::json(&SamplesRecord {
             samples: self.file.samples.len(),
             skipped: &self.file.rows.skipped,
             matter: doubt.is_none().then_some(bounding.len()),

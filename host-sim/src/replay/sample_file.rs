@@ -119,8 +119,7 @@ impl SampleFile {
         self.rows.samples[index].line
     }
 
-    /// What a report begins with: the headline, the rows that are no samples, a value far outside all others, rows out of
-    /// the order of their times, and the origin of positions, a line each, if there are such.
+    /// What a report begins with: the headline, what is odd about the rows, and the origin of positions, a line each.
     pub(crate) fn beginning(&self, headline: &str) -> String {
         let (Skipped { count, first, lacks }, unit) = (&self.rows.skipped, self.unit);
         let (row, name) = (unit.row(), unit.name());

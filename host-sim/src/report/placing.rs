@@ -1,6 +1,7 @@
 //! Where words stand beside what they name: off marks, ways and each other.
 
 use nalgebra::{Point2, Vector2};
+use rstar::primitives::Line;
 use rstar::{AABB, RTree, RTreeObject};
 
 use crate::report::shapes::Spot;
@@ -12,9 +13,6 @@ pub(crate) struct Frame {
     pub(crate) half: Vector2<f64>,
 }
 
-/// A straight way.
-struct Straight([Spot; 2]);
-
 impl RTreeObject for Frame {
     type Envelope = AABB<[f64; 2]>;
 
@@ -24,19 +22,11 @@ impl RTreeObject for Frame {
     }
 }
 
-impl RTreeObject for Straight {
-    type Envelope = AABB<[f64; 2]>;
-
-    fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.0[0].into(), self.0[1].into())
-    }
-}
-
 /// A figure on which words find their places.
 pub(crate) struct Placing {
     within: Frame,
     taken: RTree<Frame>,
-    ways: RTree<Straight>,
+    ways: RTree<Line<[f64; 2]>>,
 }
 
 impl Frame {
@@ -82,7 +72,7 @@ impl Placing {
 
     /// A way through some places, which words stay off.
     pub(crate) fn way(&mut self, places: &[Spot]) {
-        places.windows(2).for_each(|it| self.ways.insert(Straight([it[0], it[1]])));
+        places.windows(2).for_each(|it| self.ways.insert(Line::new(it[0].into(), it[1].into())));
     }
 
     /// The nearest free place for words of some size, between two distances from a spot. It is taken then. `None` if
@@ -118,7 +108,7 @@ impl Placing {
         let mut ways = self.ways.locate_in_envelope_intersecting(around);
         frame.is_within(&self.within)
             && !taken.any(|taken| taken.overlaps(frame))
-            && !ways.any(|Straight(way)| frame.meets(way))
+            && !ways.any(|way| frame.meets(&[way.from.into(), way.to.into()]))
     }
 }
 

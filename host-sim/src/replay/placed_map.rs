@@ -17,7 +17,7 @@ use crate::report::picture::{Dot, Picture};
 use crate::report::pieces::{OWN, Pieces};
 
 /// A map of a front.
-pub(crate) struct Mapped {
+pub(crate) struct PlacedMap {
     pub(crate) frame: Frame,
     /// What numbers its vertices: `step` or `row`.
     pub(crate) numbers: &'static str,
@@ -30,7 +30,7 @@ pub(crate) struct Mapped {
 
 /// A vertex.
 #[derive(Serialize)]
-pub(crate) struct MappedRecord {
+pub(crate) struct PlaceRecord {
     number: usize,
     piece: usize,
     #[serde(flatten)]
@@ -43,13 +43,13 @@ pub(crate) struct MappedRecord {
     robot: Option<usize>,
 }
 
-impl Mapped {
+impl PlacedMap {
     /// The vertices as records.
-    pub(crate) fn vertices(&self) -> Vec<MappedRecord> {
+    pub(crate) fn vertices(&self) -> Vec<PlaceRecord> {
         let record = |(index, (piece, number, vertex)): (usize, (_, _, &VertexRecord))| {
             let (in_file, robot) =
                 (self.frame.in_file(vertex.at()), self.robots.get(index).copied());
-            MappedRecord { number, piece, vertex: *vertex, in_file, robot }
+            PlaceRecord { number, piece, vertex: *vertex, in_file, robot }
         };
         self.pieces.vertices().enumerate().map(record).collect()
     }
@@ -105,7 +105,7 @@ impl Mapped {
     }
 
     /// The map by its pieces: the ground where the front lies with a probability of 0.9, the mean front, and each
-    /// vertex, with the time of its number if that is known.
+    /// vertex. A vertex has the time of its number, if that is known.
     ///
     /// # Errors
     /// Metres have no place on a map by themselves.
@@ -129,7 +129,7 @@ impl Mapped {
                 features.push(feature(GeometryValue::new_line_string(way), told));
             }
         }
-        for MappedRecord { number, piece, vertex, robot, .. } in self.vertices() {
+        for PlaceRecord { number, piece, vertex, robot, .. } in self.vertices() {
             let mut told = json!(vertex);
             for at in ["x", "z"] {
                 told.as_object_mut().and_then(|it| it.remove(at));
