@@ -43,7 +43,8 @@ impl Rows {
             return Ok(());
         }
         let lacks = "found (0, 0), where receivers are before their first fix";
-        self.leave_out(layout, |it| (it.position == [0.0; 2]).then(|| lacks.to_owned()))
+        let is_unfixed = |it: &Recorded| it.position.iter().all(|it| *it == 0.0);
+        self.leave_out(layout, |it| is_unfixed(it).then(|| lacks.to_owned()))
     }
 
     /// Leaves out the rows whose measured value is a usual fill value and lies outside all others, by more than their
@@ -81,7 +82,7 @@ impl Rows {
     ) -> Result<(), (usize, Error)> {
         for it in mem::take(&mut self.samples) {
             match lacks(&it) {
-                Some(lacks) => self.skip(layout, it.line, lacks).map_err(|why| (it.line, why))?,
+                Some(lacks) => self.skip(layout, it.line, &lacks).map_err(|why| (it.line, why))?,
                 None => self.samples.push(it),
             }
         }

@@ -124,14 +124,16 @@ impl Report for JoinedMap {
     fn words(&self) -> String {
         let &WholeRecord { state, met, vertices, metres, half_width, .. } = &self.map;
         let mut text = format!("{} maps of one front, joined.\n", self.robots.len());
-        for (robot, RobotRecord { name, vertices, kept, .. }) in (1..).zip(&self.robots) {
+        let robot = |(robot, it): (usize, &RobotRecord)| {
+            let RobotRecord { name, vertices, kept, .. } = it;
             let places = if *vertices == 1 { "place" } else { "places" };
-            text += &format!("Robot {robot}, {name}: {kept} of {vertices} {places} are kept.\n");
-        }
-        if state == State::Closed {
+            format!("Robot {robot}, {name}: {kept} of {vertices} {places} are kept.\n")
+        };
+        text.extend((1..).zip(&self.robots).map(robot));
+        text.extend((state == State::Closed).then(|| {
             let from = met.map_or(String::new(), |step| format!(", from step {step} on"));
-            text += &format!("The front is closed: the maps together go all round it{from}.\n");
-        }
+            format!("The front is closed: the maps together go all round it{from}.\n")
+        }));
         text + &extent(vertices, metres)
             + ".\n"
             + &within(half_width)

@@ -112,7 +112,7 @@ impl<'a> Reading<'a> {
     ) -> Result<()> {
         self.told.clear();
         let taken = read(self).and_then(|gap| match gap {
-            Some(lacks) => self.rows.skip(self.layout, number, lacks),
+            Some(lacks) => self.rows.skip(self.layout, number, &lacks),
             None => Ok(()),
         });
         taken.map_err(|error| anyhow!("{}: {error}", self.rows.unit.place(self.name, number)))

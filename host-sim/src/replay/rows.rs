@@ -141,11 +141,11 @@ impl Rows {
     ///
     /// # Errors
     /// What it lacks, where the layout is strict.
-    pub(crate) fn skip(&mut self, layout: &Layout, line: usize, lacks: String) -> Result<()> {
+    pub(crate) fn skip(&mut self, layout: &Layout, line: usize, lacks: &str) -> Result<()> {
         if layout.strict {
             bail!("{lacks}, expected a value in each {}, as --strict says", self.unit.row());
         }
-        self.heading(line, &lacks);
+        self.heading(line, lacks);
         Ok(())
     }
 }

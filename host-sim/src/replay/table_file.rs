@@ -198,9 +198,10 @@ impl Lines<'_> {
         }
         let begins = self.text.len() - rest.len();
         let passed = &self.text[self.at..begins];
-        let count = |end: u8| passed.iter().filter(|byte| **byte == end).count();
-        let both = passed.windows(2).filter(|pair| pair == b"\r\n").count();
-        self.line += count(b'\r') + count(b'\n') - both;
+        for (k, byte) in passed.iter().enumerate() {
+            let is_end = *byte == b'\n' || *byte == b'\r' && passed.get(k + 1) != Some(&b'\n');
+            self.line += usize::from(is_end);
+        }
         self.at = begins;
         self.line
     }

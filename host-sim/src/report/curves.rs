@@ -129,11 +129,15 @@ fn note(fields: u64) -> String {
 }
 
 impl Panel {
+    fn is_error(&self) -> bool {
+        self.name != BITS
+    }
+
     fn draw(&self, sheet: &mut Sheet, from: Spot, to: Spot, by: &'static str) {
         let all = || self.of.iter().flatten();
         let last = all().map(|(at, _)| *at).max().unwrap_or(1);
         let highest = all().map(|(_, it)| it.p90).fold(0.0, f64::max);
-        let z = if self.name != BITS {
+        let z = if self.is_error() {
             let lowest = all().map(|(_, it)| it.median.max(LEAST)).fold(f64::INFINITY, f64::min);
             let power = |it: f64| libm::pow(10.0, it);
             let least = power(libm::floor(libm::log10(lowest.min(highest.max(LEAST)))));
@@ -150,7 +154,7 @@ impl Panel {
         let spots = |of: &[(u32, Spread)], pick: fn(&Spread) -> f64| -> Vec<Spot> {
             of.iter().map(|(at, it)| axes.at(Point2::new(f64::from(*at), pick(it)))).collect()
         };
-        if self.name != BITS {
+        if self.is_error() {
             for (k, of) in self.of.iter().enumerate().filter(|(_, of)| of.len() > 1) {
                 let mut ring = spots(of, |it| it.median);
                 let edge = spots(of, |it| it.p90);
