@@ -2,20 +2,18 @@
 
 use anyhow::{Context as _, Result, anyhow};
 use nalgebra::{Point2, Vector2};
-use planner_core::error::GivenError;
-use planner_core::{Area, Label, Line, Sample};
+use planner_core::{Area, Belief as _, Label, Line, Sample, VersionSpace};
 
 use crate::fitting::doubt::{Doubt, Votes};
+use crate::fitting::explanation::{Explanation, Question};
 use crate::fitting::fewest::Fewest;
-use crate::fitting::fit::{Fit, Question};
 use crate::fitting::hull::{Row, in_order};
 use crate::fitting::line_posterior::{Cell, LinePosterior, TooOpen};
 use crate::fitting::line_set::{self, ByNormal, intercepts, slope_arcs};
 use crate::fitting::outlier::{Repeats, outliers};
 use crate::fitting::patch::{Mass, Patch};
-use crate::fitting::separation::{self, Separation};
+use crate::fitting::separation::{NoSeparation, Separation, are_separable};
 use crate::fitting::shortest_pairs::bisector;
-use crate::fitting::tolerant::{self, NoSeparation, TolerantSeparation};
 use crate::mission::read_out::LEVEL;
 use crate::replay::fit_words::Words;
 use crate::replay::sample_file::SampleFile;
@@ -33,6 +31,9 @@ pub struct Trust {
 
 /// The reliability by which the likeliest line of labels is found that no line separates, if none is given.
 const SUPPOSED: f64 = 0.9;
+
+/// As many samples as a planner holds.
+const MOST_HELD: usize = 128;
 
 /// Files with more samples are refused without an explanation.
 const MOST_EXPLAINED: usize = 20_000;
@@ -55,7 +56,7 @@ pub(crate) struct Answer {
     /// Where labels may be wrong.
     pub(crate) doubt: Option<Doubted>,
     /// Whether a straight line explains the labels.
-    pub(crate) fit: Fit,
+    pub(crate) fit: Explanation,
     /// Lines that bound the set.
     bounds: Vec<ByNormal>,
 }
@@ -80,77 +81,57 @@ impl Answer {
     pub(crate) fn of(file: &SampleFile, trust: Trust) -> Result<Self> {
         let p = trust.p.or(file.rows.p).unwrap_or(1.0);
         let tolerance = (trust.tolerance > 0.0).then_some(trust.tolerance);
-        match tolerance {
-            _ if p < 1.0 => doubted(file, p, tolerance),
-            Some(tolerance) => tolerant(file, tolerance),
-            None => exact(file),
-        }
+        if p < 1.0 { doubted(file, p, tolerance) } else { certain(file, tolerance) }
     }
 
     /// The parts of some ground to which all lines left, or all of the credible set, give +1 and -1.
     pub(crate) fn ground(&self, area: Area) -> [Polygon; 2] {
-        if self.doubt.is_none() && self.tolerance.is_none() {
-            return [Label::Positive, Label::Negative]
-                .map(|label| Polygon::certain(area, &self.bounding, label));
-        }
         line_set::agreed(&area.into(), &self.bounds)
     }
 }
 
-fn exact(file: &SampleFile) -> Result<Answer> {
-    let rows = in_order(&file.samples);
-    let lines = Separation::of(&file.samples, &rows).map_err(|why| match why {
-        GivenError::NotSeparable(index) => {
-            let outliers = outliers(&file.samples, &rows, separation::are_separable);
-            contradiction(file, index, &outliers, None)
-        }
-        GivenError::OneLabel => one_label(file),
-        why => {
-            anyhow!("{}: {why}; expected samples of both labels, not all on one line", file.name)
-        }
-    })?;
-    Ok(Answer {
-        bounding: lines.support().collect(),
-        slope_arcs: lines.slope_arc().intervals_deg().to_vec(),
-        intercept: lines.intercepts(),
-        centre: lines.centre().map(Line::from),
-        maximum_margin: lines.maximum_margin().map(Line::from),
-        bisector: bisector(&rows).map(Line::from),
-        tolerance: None,
-        doubt: None,
-        fit: Fit::exact(file.samples.len()),
-        bounds: Vec::new(),
-    })
-}
-
-fn tolerant(file: &SampleFile, tolerance: f64) -> Result<Answer> {
-    let rows = in_order(&file.samples);
-    let lines = TolerantSeparation::of(&file.samples, &rows, tolerance).map_err(|why| match why {
+/// The lines that labels leave which are true.
+fn certain(file: &SampleFile, tolerance: Option<f64>) -> Result<Answer> {
+    let SampleFile { name, samples, .. } = file;
+    let (rows, off) = (in_order(samples), tolerance.unwrap_or(0.0));
+    let lines = Separation::of(samples, &rows, off).map_err(|why| match why {
         NoSeparation::Contradiction(index) => {
-            let are_separable = |rows: &[Row]| tolerant::are_separable(rows, tolerance);
-            let outliers = outliers(&file.samples, &rows, are_separable);
-            contradiction(file, index, &outliers, Some(tolerance))
+            let outliers = outliers(samples, &rows, |rows: &[Row]| are_separable(rows, off));
+            contradiction(file, index, &outliers, tolerance)
         }
-        NoSeparation::OneLabel => {
-            one_label(file)
-        }
+        NoSeparation::OneLabel => one_label(file),
+        NoSeparation::Collinear => anyhow!(
+            "{name}: the samples are collinear; expected samples of both labels, not all on one line"
+        ),
         NoSeparation::AnyDirection => anyhow!(
-            "{}: positions that may be off by {tolerance} m leave lines of every direction, expected samples further apart or a smaller --tolerance",
-            file.name
+            "{name}: positions that may be off by {off} m leave lines of every direction, expected samples further apart or \
+             a smaller --tolerance"
         ),
     })?;
-    Ok(Answer {
+    let mut answer = Answer {
         bounding: lines.support(),
         slope_arcs: lines.slope_arcs(),
         intercept: lines.intercepts(),
         centre: line_set::line(lines.centre()),
         maximum_margin: lines.maximum_margin().and_then(line_set::line),
-        bisector: None,
-        tolerance: Some(tolerance),
+        bisector: bisector(&rows).filter(|_| tolerance.is_none()).map(Line::from),
+        tolerance,
         doubt: None,
-        fit: Fit::exact(file.samples.len()),
+        fit: Explanation::agreeing(samples.len()),
         bounds: lines.bounds(),
-    })
+    };
+    // To the last bit as in a mission, as long as a planner could hold them.
+    let some = if samples.len() > MOST_HELD { &answer.bounding } else { samples };
+    if tolerance.is_none()
+        && let Ok(space) = VersionSpace::<MOST_HELD>::new(some)
+    {
+        answer.slope_arcs = space.slope_arc().intervals_deg().to_vec();
+        answer.intercept = space.intercepts();
+        let estimates = space.estimates();
+        answer.centre = estimates.centre.map(Line::from);
+        answer.maximum_margin = estimates.maximum_margin.map(Line::from);
+    }
+    Ok(answer)
 }
 
 /// The error for samples of which the one at `index` is the first to leave no line. Without any one of `outliers` a
@@ -243,7 +224,8 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
     let most_likely =
         most_likely.with_context(|| format!("{name}: expected labels that prefer some line"))?;
     let alike = if tolerance.is_none() { alike(&most_likely, samples) } else { None };
-    let most_likely = alike.as_ref().and_then(Separation::centre).map_or(most_likely, Line::from);
+    let centre = alike.as_ref().and_then(|it| line_set::line(it.centre()));
+    let most_likely = centre.unwrap_or(most_likely);
     let off = tolerance.unwrap_or(0.0);
     let disagrees = |sample: &Sample| {
         f64::from(sample.label.sign()) * most_likely.distance(sample.site.into()) < -off
@@ -255,7 +237,7 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
         intercept: intercepts(&slope_arcs, bounds.iter().copied()),
         slope_arcs,
         centre: mean(&all),
-        maximum_margin: alike.and_then(|lines| lines.maximum_margin()).map(Line::from),
+        maximum_margin: alike.and_then(|it| it.maximum_margin()).and_then(line_set::line),
         bisector: None,
         tolerance,
         doubt: Some(Doubted { p, pruned_mass, probability, most_likely, disagreeing }),
@@ -264,18 +246,15 @@ fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> 
     })
 }
 
-/// How well the most likely line explains the labels that may be wrong.
-fn fit(file: &SampleFile, line: &Line, p: f64, tolerance: f64) -> Fit {
+/// What explains the labels that may be wrong, beside the most likely line.
+fn fit(file: &SampleFile, line: &Line, p: f64, tolerance: f64) -> Explanation {
     let mut is_certain = vec![false; file.samples.len()];
     for &index in &file.rows.certain {
         is_certain[index] = true;
     }
-    let rows: Vec<_> = (0..file.samples.len()).filter(|index| !is_certain[*index]).collect();
-    let samples = || rows.iter().map(|index| file.samples[*index]);
-    let at: Vec<_> = samples().map(|sample| Point2::<f64>::from(sample.site)).collect();
-    let is_positive: Vec<_> = samples().map(|sample| sample.label == Label::Positive).collect();
-    let question = Question { at: &at, is_positive: &is_positive, line, p, tolerance };
-    Fit::of(&question).numbered(&rows)
+    let read = (0..).zip(&file.samples).filter(|(row, _)| !is_certain[*row as usize]);
+    let read: Vec<_> = read.map(|(row, sample)| (*sample, row)).collect();
+    Explanation::of(&Question { given: &[], read: &read, p: Some(p), tolerance, line })
 }
 
 /// Samples that have one label.
@@ -318,7 +297,7 @@ fn posterior(
             // Often that is because no straight line explains them at all.
             let fewest = Fewest::of(&file.samples);
             let fit = fewest.map(|it| fit(file, &it.line, p, tolerance.unwrap_or(0.0)));
-            let Some(fit) = fit.filter(|it| it.verdict.is_bad()) else {
+            let Some(fit) = fit.filter(Explanation::is_bad) else {
                 return anyhow!("{name}: {open}");
             };
             let Words { says, advice } = Words::of(file, &fit, Some(p));
@@ -344,7 +323,7 @@ fn credible(cells: &[Cell]) -> (&[Cell], f64) {
 fn alike(line: &Line, samples: &[Sample]) -> Option<Separation> {
     let relabelled = samples.iter().map(|sample| Sample { label: side(line, sample), ..*sample });
     let relabelled: Vec<_> = relabelled.collect();
-    Separation::of(&relabelled, &in_order(&relabelled)).ok()
+    Separation::of(&relabelled, &in_order(&relabelled), 0.0).ok()
 }
 
 fn side(line: &Line, sample: &Sample) -> Label {

@@ -7,7 +7,6 @@ use std::fmt::Write as _;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::fitting::fit::Verdict;
 use crate::replay::answer::Trust;
 use crate::replay::line::Replay;
 use crate::replay::rows::Layout;
@@ -56,10 +55,44 @@ fn false_alarms() {
         let text = straight(&mut rng, q, sigma);
         let trust = Trust { p: Some(1.0 - q), tolerance: 3.0 * sigma };
         let replay = Replay::parse("made up", text.as_bytes(), &Layout::default(), trust);
-        match replay.expect("a result").answer.fit.verdict {
-            Verdict::Fits => {}
-            verdict => refused.push((file, q, sigma, verdict)),
+        let fit = replay.expect("a result").answer.fit;
+        if fit.verdict() != "fits" {
+            refused.push((file, q, sigma, fit));
         }
     }
     assert!(100 * refused.len() <= files, "{refused:#?}");
+}
+
+/// How large gains become without a reason.
+#[test]
+fn gains() {
+    use planner_core::{Label, Sample};
+    let mut rng =
+        ChaCha8Rng::seed_from_u64(env::var("SEED").map_or(77, |it| it.parse().expect("a number")));
+    for file in 0..20_000 {
+        let q = [0.004, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3][file % 7];
+        let sigma = if file % 14 < 7 { 0.0 } else { 0.15 };
+        let text = straight(&mut rng, q, sigma);
+        let all: Vec<_> = text
+            .lines()
+            .skip(1)
+            .map(|line| {
+                let v: Vec<f64> = line.split(',').map(|it| it.parse().expect("a number")).collect();
+                let label = if v[2] > 0.0 { Label::Positive } else { Label::Negative };
+                Sample::at([v[0], v[1]], label).expect("near")
+            })
+            .collect();
+        println!("#null {q} {sigma}");
+        let read: Vec<_> = all.iter().copied().zip(0..).collect();
+        let line = crate::fitting::fewest::Fewest::of(&all).expect("a line").line;
+        let question = crate::fitting::explanation::Question {
+            given: &[],
+            read: &read,
+            p: Some(1.0 - q),
+            tolerance: 3.0 * sigma,
+            line: &line,
+        };
+        let it = crate::fitting::explanation::Explanation::of(&question);
+        println!("={} {:?}", it.verdict(), it);
+    }
 }

@@ -1,7 +1,6 @@
 //! What a verdict on a fit says, and what to do, in words.
 
-use crate::fitting::fit::Fault;
-use crate::fitting::fit::{Fit, Run, Verdict};
+use crate::fitting::explanation::{Explanation, Fault, Found};
 use crate::replay::sample_file::SampleFile;
 
 /// Fewer labels than this show gross faults alone.
@@ -39,99 +38,99 @@ const NONE: &str = "No straight line explains these labels:";
 
 impl Words {
     /// The verdict on a fit to the samples of a file, and what to do. `p` is what was said of the labels.
-    pub(crate) fn of(file: &SampleFile, fit: &Fit, p: Option<f64>) -> Self {
-        let (says, advice) = match fit.verdict {
-            Verdict::Fits | Verdict::TooHigh | Verdict::TooLow => of_line(fit, p),
-            Verdict::Row(_) | Verdict::Stretch { .. } => of_rows(file, fit),
-            Verdict::Bend { .. } | Verdict::Drift { .. } | Verdict::TwoLines { .. } => {
-                of_shape(file, fit)
+    pub(crate) fn of(file: &SampleFile, fit: &Explanation, p: Option<f64>) -> Self {
+        let (says, advice) = match fit.found {
+            None => of_line(fit, p),
+            Some(found) => {
+                let (what, advice) = of_found(file, fit.disagreeing, found);
+                (format!("{NONE} {what}"), advice)
             }
         };
         Self { says, advice }
     }
 
     /// What explains labels that no line separates, if `fit` is that of the most likely line.
-    pub(crate) fn explanation(file: &SampleFile, fit: &Fit) -> String {
-        match fit.verdict {
-            Verdict::Fits | Verdict::TooHigh | Verdict::TooLow => format!(
+    pub(crate) fn explanation(file: &SampleFile, fit: &Explanation) -> String {
+        let says = Self::of(file, fit, None).says;
+        match fit.found {
+            None => format!(
                 "{} of {} labels disagree with the most likely line, as --p {} explains",
                 fit.disagreeing,
                 fit.labels,
-                reliability(fit.suggested_p)
+                reliability(fit.suggested_p())
             ),
-            Verdict::Bend { radius, .. } => {
-                let says = Self::of(file, fit, None).says;
+            Some(Found::Bend { radius, .. }) => {
                 format!("{says} Map it with --front {}", rounded(radius))
             }
-            _ => Self::of(file, fit, None).says.trim_end_matches('.').to_owned(),
+            Some(_) => says.trim_end_matches('.').to_owned(),
         }
     }
 }
 
 /// Of a straight line.
-fn of_line(fit: &Fit, p: Option<f64>) -> (String, String) {
-    let Fit { labels, disagreeing, expected: [low, high], suggested_p, .. } = *fit;
+fn of_line(fit: &Explanation, p: Option<f64>) -> (String, String) {
+    let Explanation { labels, disagreeing, expected: [low, high], .. } = *fit;
     let Some(p) = p else {
         let says = format!("A straight line fits: all {labels} labels agree with it.");
         return (says, String::new());
     };
-    let suggested = reliability(suggested_p);
+    let suggested = reliability(fit.suggested_p());
     let counts = format!("{disagreeing} of {labels}, {low} to {high} expected");
-    match fit.verdict {
-        Verdict::TooHigh => (
+    if disagreeing > high {
+        let advice = if fit.suggested_p() < 0.6 {
+            "The labels hardly depend on the side of any line. Check the column of the labels and the sensor."
+                .to_owned()
+        } else {
+            format!(
+                "Say --p {suggested}. If labels disagree near the line only, give a larger --tolerance instead."
+            )
+        };
+        return (
             format!(
                 "More labels disagree with the line than p = {p} explains: {counts}. The file suggests p = {suggested}."
             ),
-            if suggested_p < 0.6 {
-                "The labels hardly depend on the side of any line. Check the column of the labels and the sensor."
-                    .to_owned()
-            } else {
-                format!(
-                    "Say --p {suggested}. If labels disagree near the line only, give a larger --tolerance instead."
-                )
-            },
-        ),
-        Verdict::TooLow => (
+            advice,
+        );
+    }
+    if disagreeing < low {
+        return (
             format!(
                 "A straight line fits. Fewer labels disagree with it than p = {p} makes likely: {counts}. The file \
                  suggests p = {suggested}."
             ),
             format!("The result is safe, but its intervals are too wide. Try --p {suggested}."),
-        ),
-        _ => (
-            format!(
-                "A straight line fits: {disagreeing} of {labels} labels disagree with it, {low} to {high} expected."
-            ),
-            if labels < FEW {
-                format!("Fewer than {FEW} labels show gross faults only.")
-            } else {
-                String::new()
-            },
-        ),
+        );
     }
+    let few = format!("Fewer than {FEW} labels show gross faults only.");
+    (
+        format!(
+            "A straight line fits: {disagreeing} of {labels} labels disagree with it, {low} to {high} expected."
+        ),
+        if labels < FEW { few } else { String::new() },
+    )
 }
 
-/// Of rows that say something else.
-fn of_rows(file: &SampleFile, fit: &Fit) -> (String, String) {
-    let rows = |ends: [usize; 2]| {
-        let [first, last] = ends.map(|end| file.line(end));
-        format!("{}s {first} to {last}", file.unit.name())
+/// Of another boundary, or of a sensor at fault: what it is, and what to do. With the most likely line so many labels
+/// disagree.
+fn of_found(file: &SampleFile, disagree: usize, found: Found) -> (String, String) {
+    let all = file.samples.len();
+    let with = |count: usize| {
+        format!("with {count} of {all} labels, the most likely line with {disagree}.")
     };
-    match fit.verdict {
-        Verdict::Stretch { ends, fault, counts: [count, against], p } => {
-            let rows = rows(ends);
+    match found {
+        Found::Stretch { times, fault, counts: [count, against], p } => {
+            let [first, last] = times.map(|row| file.line(row as usize));
+            let rows = format!("({}s {first} to {last})", file.unit.name());
             let what = match fault {
                 Fault::Coin | Fault::Inverted => {
                     format!(
-                        "{against} of {count} labels in a row disagree with the best one ({rows})."
+                        "{against} of {count} labels in a row disagree with the best one {rows}."
                     )
                 }
-                Fault::Stuck(label) => {
-                    let label = if label { "+1" } else { "-1" };
-                    format!(
-                        "{count} labels in a row are almost all {label}, on either side of the best one ({rows})."
-                    )
-                }
+                Fault::Stuck(label) => format!(
+                    "{count} labels in a row are almost all {}, on either side of the best one {rows}.",
+                    if label { "+1" } else { "-1" }
+                ),
             };
             let ask = match fault {
                 Fault::Coin => "Was the sensor fouled there?",
@@ -141,52 +140,36 @@ fn of_rows(file: &SampleFile, fit: &Fit) -> (String, String) {
             let p = reliability(p);
             let advice =
                 format!("{ask} Leave these rows out and replay the rest, which suggests p = {p}.");
-            (format!("{NONE} {what}"), advice)
+            (what, advice)
         }
-        Verdict::Row(Run { count, ends }) => (
-            format!("{NONE} {count} labels in a row disagree with the best one ({}).", rows(ends)),
-            "Was the sensor fouled there? Leave these rows out and replay the rest.".to_owned(),
-        ),
-        _ => <(String, String)>::default(),
-    }
-}
-
-/// Of another boundary than a straight, still line.
-fn of_shape(file: &SampleFile, fit: &Fit) -> (String, String) {
-    let all = file.samples.len();
-    let with = |count: usize| {
-        format!("with {count} of {all} labels, the most likely line with {}.", fit.disagreeing)
-    };
-    match fit.verdict {
-        Verdict::Bend { radius, sagitta, disagreeing } => (
+        Found::Bend { radius, sagitta, disagreeing } => (
             format!(
-                "{NONE} the boundary bends. An arc of radius {} m disagrees {}",
+                "the boundary bends. An arc of radius {} m disagrees {}",
                 rounded(radius),
                 with(disagreeing)
             ),
             format!(
-                "Map it with --front {}. For a straight line take a shorter stretch, or \
-                 a tolerance that covers the bend. The arc is {} m from its chord.",
+                "Map it with --front {}. For a straight line take a shorter stretch, or a tolerance that covers the bend. \
+                 The arc is {} m from its chord.",
                 rounded(radius),
                 rounded(sagitta)
             ),
         ),
-        Verdict::Drift { metres, disagreeing } => (
+        Found::Drift { metres, disagreeing } => (
             format!(
-                "{NONE} the boundary moved. A line that moves {} m from the first row to the last disagrees {}",
+                "the boundary moved. A line that moves {} m from the first row to the last disagrees {}",
                 rounded(metres),
                 with(disagreeing)
             ),
             "Take fewer rows at a time, or a tolerance that covers the motion.".to_owned(),
         ),
-        Verdict::TwoLines { disagreeing } => (
+        Found::TwoBoundaries { disagreeing } => (
             format!(
-                "{NONE} there are two boundaries, or one with a corner. Two lines disagree {}",
+                "there are two boundaries, or one with a corner. Two lines disagree {}",
                 with(disagreeing)
             ),
             "Split the area so that each part has one straight boundary, and replay each part."
                 .to_owned(),
         ),
-        _ => <(String, String)>::default(),
     }
 }

@@ -273,9 +273,9 @@ impl Report for Replay {
             (false, Some(_)) => "set: the 90 % credible set of lines".to_owned(),
             (true, Some(_)) => format!("one in {every} of {count}; set: the 90 % credible set"),
         };
-        let verdict = &self.answer.fit.verdict;
-        if verdict.is_bad() && !note.is_empty() {
-            note = format!("{note}; verdict: {}", verdict.name());
+        let fit = &self.answer.fit;
+        if fit.is_bad() && !note.is_empty() {
+            note = format!("{note}; verdict: {}", fit.verdict());
         }
         let (name, line) = self.named()[0];
         let estimate =
@@ -322,7 +322,7 @@ impl Report for Replay {
     /// The verdict on the fit, if the line is not to be relied on.
     fn warning(&self) -> Option<String> {
         let Words { says, advice } = self.verdict();
-        self.answer.fit.verdict.is_bad().then(|| format!("{says} {advice}"))
+        self.answer.fit.is_bad().then(|| format!("{says} {advice}"))
     }
 }
 

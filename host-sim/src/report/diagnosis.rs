@@ -1,7 +1,7 @@
 //! Why no straight, still line explains the labels of a mission, and what to do, in words.
 
 use crate::fitting::explanation::Cause;
-use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord, Shares};
+use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord};
 
 /// A cause is named beside others from this share on.
 const NAMED: f64 = 0.1;
@@ -47,6 +47,7 @@ fn words(cause: Cause) -> &'static str {
         Cause::Line => "a straight, still line",
         Cause::Bend => "the boundary bends",
         Cause::Drift => "the boundary moves",
+        Cause::TwoBoundaries => "there are two boundaries, or one with a corner",
         Cause::Stuck => "the sensor is stuck on a label",
         Cause::Inverted => "the sensor reads the other label",
         Cause::StuckOrInverted => {
@@ -59,11 +60,14 @@ fn words(cause: Cause) -> &'static str {
 }
 
 fn explanation(record: &DiagnosisRecord) -> String {
-    let likely = record.shares.as_ref().map(likely).unwrap_or_default();
+    // The causes that are worth a word, the likeliest first.
+    let mut likely: Vec<_> = record.shares.iter().filter(|(_, share)| **share >= NAMED).collect();
+    likely.sort_by(|p, q| q.1.total_cmp(p.1));
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
     if record.cause == Cause::Unclear {
-        let each =
-            likely.iter().map(|(cause, share)| format!("{} ({})", words(*cause), percent(*share)));
+        let each = likely
+            .iter()
+            .map(|(cause, share)| format!("{} ({})", words(**cause), percent(**share)));
         let each: Vec<_> = each.collect();
         return match each.split_last() {
             None => "the labels cannot tell.".to_owned(),
@@ -73,30 +77,17 @@ fn explanation(record: &DiagnosisRecord) -> String {
             }
         };
     }
-    let share = match (record.cause, &record.shares) {
-        (_, None) => None,
-        (Cause::StuckOrInverted, Some(shares)) => Some(shares.stuck + shares.inverted),
-        (_, Some(_)) => likely.first().map(|(_, share)| *share),
+    let of = |cause| record.shares.get(&cause).copied().unwrap_or_default();
+    let share = match record.cause {
+        Cause::StuckOrInverted => of(Cause::Stuck) + of(Cause::Inverted),
+        cause => of(cause),
     };
-    let share =
-        share.map_or(String::new(), |share| format!(", with a probability of {}", percent(share)));
+    let share = if record.shares.is_empty() {
+        String::new()
+    } else {
+        format!(", with a probability of {}", percent(share))
+    };
     format!("{}{share}.", words(record.cause))
-}
-
-/// The causes that are worth a word, the likeliest first.
-fn likely(shares: &Shares) -> Vec<(Cause, f64)> {
-    let mut all = vec![
-        (Cause::Line, shares.line),
-        (Cause::Bend, shares.bend),
-        (Cause::Drift, shares.drift),
-        (Cause::Stuck, shares.stuck),
-        (Cause::Inverted, shares.inverted),
-        (Cause::Late, shares.late),
-        (Cause::Random, shares.random),
-    ];
-    all.retain(|(_, share)| *share >= NAMED);
-    all.sort_by(|p, q| q.1.total_cmp(&p.1));
-    all
 }
 
 /// What to do.
@@ -112,6 +103,7 @@ fn advice(record: &DiagnosisRecord) -> String {
         Cause::Line => "fly again. While a line is true, 1 mission in 20 has a warning and 1 in 100 an alarm.".to_owned(),
         Cause::Bend => or_cover("take a shorter stretch (half of it bends a quarter as much)"),
         Cause::Drift => or_cover("take less time"),
+        Cause::TwoBoundaries => "split the area so that each part has one straight boundary.".to_owned(),
         Cause::Stuck | Cause::Inverted | Cause::StuckOrInverted => {
             "check the sensor at a place of either label, and fly again.".to_owned()
         }

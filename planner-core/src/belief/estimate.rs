@@ -63,31 +63,16 @@ pub fn centre(lines: CellView<'_>) -> Option<LocalLine> {
     Moments::of(lines)?.mean()
 }
 
-/// [`centre`] for the samples that matter, in cyclic order and of any number.
-pub fn centre_of(support: &[Sample]) -> Option<LocalLine> {
-    Moments::over(Trapezoids::of(support.len(), |k| support.get(k).copied())?)?.mean()
-}
-
 /// The hard-margin separator: midway between the closest points of the two labels' convex hulls.
 ///
 /// These are chosen by exact integer conditions, and its direction is exact. Only samples that still matter
 /// to the version space can support it. `O(m)` for `m` of them.
 pub fn maximum_margin(lines: CellView<'_>) -> Option<LocalLine> {
-    widest(lines.trapezoids()?)
-}
-
-/// [`maximum_margin`] for the samples that matter, in cyclic order and of any number.
-pub fn maximum_margin_of(support: &[Sample]) -> Option<LocalLine> {
-    widest(Trapezoids::of(support.len(), |k| support.get(k).copied())?)
-}
-
-/// The line in the middle of the interval of the offsets, in the direction in which that is widest.
-///
-/// As the direction turns, the interval first widens and then narrows. So it is widest where a trapezoid
-/// has stopped widening at its end: inside, across what joins its two samples, or at once, at its beginning.
-fn widest<F: Fn(usize) -> Option<Sample>>(trapezoids: Trapezoids<F>) -> Option<LocalLine> {
+    // As the direction turns, the interval of the offsets first widens and then narrows. So it is widest where a
+    // trapezoid has stopped widening at its end: inside, across what joins its two samples, or at once, at its
+    // beginning.
     let narrows = |along: Vector, it: &Trapezoid| along.dot(it.across()) >= 0;
-    let widest = trapezoids.into_iter().find(|it| narrows(it.to, it))?;
+    let widest = lines.trapezoids()?.into_iter().find(|it| narrows(it.to, it))?;
     let across = widest.across();
     let along = if narrows(widest.from, &widest) { widest.from } else { across.left().reversed() };
     let width = cross(along, across) * UnitVector::of(along).per_length;

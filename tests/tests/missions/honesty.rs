@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 use host_sim::campaign::standard_field;
-use host_sim::fitting::explanation::{Cause, Explanation, Told};
+use host_sim::fitting::explanation::{Cause, Explanation, Question};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Lines;
@@ -255,9 +255,9 @@ fn fly_by(
         let off = vertices.map(|it| misclassified(mission.config.area, &it, &centre));
         wrong > 0.05 && wrong > 3.0 * mean(off)
     });
-    let tolerance = Tolerance::NONE;
-    let explain = |near: Line| {
-        Explanation::of(&Told { given: space.given(), read: &read, tolerance, near: &near })
+    let explain = |line: Line| {
+        let given = space.given();
+        Explanation::of(&Question { given, read: &read, p: None, tolerance: 0.0, line: &line })
     };
     let refuted = estimate.filter(|_| ended == Some(StopReason::NoLine));
     Flown { ended, is_refused, is_alarmed, is_wrong, audit, explanation: refuted.map(explain) }
@@ -300,7 +300,7 @@ fn results_that_are_wrong_say_so_and_why() {
                 let known = percent(&flown, Flown::is_known);
                 expect(format!("{what}, known"), known, ..=case.most_known);
                 let told = flown.iter().filter_map(|it| it.explanation.as_ref());
-                let told: Vec<_> = told.map(Explanation::cause).collect();
+                let told: Vec<_> = told.map(|it| it.cause).collect();
                 let said = told.iter().filter(|it| **it != Cause::Unclear);
                 let right = said.clone().filter(|it| case.causes.contains(it)).count();
                 let all = said.count();
@@ -390,7 +390,7 @@ fn the_tolerance_that_is_advised_covers_what_was_seen() {
     for case in [Case::arc(100.0), Case::arc(30.0), Case::sine(1.0), Case::drift(0.05)] {
         let flown = ensemble::fly_some(fields, |number| {
             let mut mission = until(case.field(number, Algorithm::Lookahead)?, 0.5);
-            let metres = fly(&case, &mission, 64).explanation?.covering(0.9)?;
+            let metres = fly(&case, &mission, 64).explanation?.tolerance?;
             mission.config.tolerance = Tolerance::new(metres).expect("metres");
             Some((metres, fly(&case, &mission, 64)))
         });

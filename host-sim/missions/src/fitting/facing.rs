@@ -70,11 +70,6 @@ impl Facing {
         &self.differences
     }
 
-    /// Whether each hull is on a line.
-    pub fn are_flat(&self) -> bool {
-        self.positive.is_flat() && self.negative.is_flat()
-    }
-
     /// The rightmost and the leftmost difference as seen from the origin, the nearest of several: samples
     /// through which the lines pass that touch both hulls and pass between them. `None` when the hulls touch
     /// each other: no line separates them.
@@ -101,17 +96,6 @@ impl Facing {
         let height = |row: Row| side * pair.apart().cross(row.site() - pair.negative.site());
         self.positive.corners().all(|row| height(row) >= 0)
             && self.negative.corners().all(|row| height(row) <= 0)
-    }
-
-    /// The corners that bound the separating lines, in the cyclic order of a cell: those of the positive hull
-    /// from the left end to the right, then those of the negative one back again.
-    pub fn between(&self, right: Pair, left: Pair) -> Vec<Row> {
-        let positive: Vec<_> = self.positive.corners().collect();
-        let mut negative: Vec<_> = self.negative.corners().collect();
-        negative.reverse();
-        let mut between = stretch(&positive, left.positive, right.positive);
-        between.extend(stretch(&negative, right.negative, left.negative));
-        between
     }
 }
 
@@ -140,12 +124,4 @@ fn merged(positive: &[Row], negative: &[Row]) -> Vec<Pair> {
         }
         pairs.push(pair);
     }
-}
-
-/// The part of a cycle from one of its rows to another, both included.
-fn stretch(cycle: &[Row], from: Row, to: Row) -> Vec<Row> {
-    let place = |wanted: Row| cycle.iter().position(|row| *row == wanted).unwrap_or_default();
-    let (from, to) = (place(from), place(to));
-    let count = (to + cycle.len() - from) % cycle.len() + 1;
-    cycle.iter().cycle().skip(from).take(count).copied().collect()
 }

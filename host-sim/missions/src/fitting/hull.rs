@@ -51,11 +51,6 @@ impl Hull {
         let back = self.upper.get(1..self.upper.len().max(2) - 1).unwrap_or_default();
         self.lower.iter().chain(back).copied()
     }
-
-    /// Whether all of it is on one line.
-    pub fn is_flat(&self) -> bool {
-        self.lower.len() <= 2 && self.upper.len() <= 2
-    }
 }
 
 fn chain(rows: impl Iterator<Item = Row>) -> Vec<Row> {

@@ -2,19 +2,16 @@
 //!
 //! | module | contains |
 //! | --- | --- |
-//! | [`separation`] | true labels: the exact version space, by convex hulls |
-//! | [`tolerant`] | true labels at positions that err |
+//! | [`separation`] | true labels: the version space, by convex hulls, also where positions err |
 //! | [`doubt`], [`line_posterior`] | labels that may be wrong: the distribution over lines |
 //! | [`outlier`] | the rows without which a line separates the rest |
-//! | [`fit`] | whether any straight, still line explains the labels |
-//! | [`fewest`] | the line that the fewest labels of a mission disagree with |
-//! | [`explanation`] | what explains labels of a mission that no line explains |
+//! | [`fewest`] | the line that the fewest labels disagree with |
+//! | [`explanation`] | whether a straight, still line explains the labels, and what does if not |
 
 pub mod doubt;
 pub mod explanation;
 pub mod facing;
 pub mod fewest;
-pub mod fit;
 mod halving;
 pub mod hull;
 pub mod line_posterior;
@@ -23,4 +20,3 @@ pub mod outlier;
 pub mod patch;
 pub mod separation;
 pub mod shortest_pairs;
-pub mod tolerant;

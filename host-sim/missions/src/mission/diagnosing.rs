@@ -3,36 +3,14 @@
 
 use nalgebra::Point2;
 use planner_core::belief::evidence::Suspect;
-use planner_core::{Label, Line, Reading, Reliability, Sample, Step, StopReason};
+use planner_core::{Line, Reading, Reliability, Sample, Step, StopReason};
 
-use crate::fitting::explanation::{Cause, Explanation, Family, Told};
+use crate::fitting::explanation::{Cause, Explanation, Question};
 use crate::fitting::fewest::Fewest;
-use crate::fitting::fit::{Fault, Fit, Question, Verdict};
 use crate::mission::definition::Mission;
-use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord, Shares};
+use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord};
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::{AlarmRecord, Ending, StepResult};
-
-/// With what probability a tolerance is to cover a bend or a drift.
-const COVERING: f64 = 0.9;
-
-/// A bend or a drift may be the cause if the two have this share.
-const POSSIBLE: f64 = 0.1;
-
-impl Shares {
-    fn of(explanation: &Explanation) -> Self {
-        let share = |family| (1e3 * explanation.share(family)).round() / 1e3;
-        Self {
-            line: share(Family::Line),
-            bend: share(Family::Bend),
-            drift: share(Family::Drift),
-            stuck: share(Family::Stuck),
-            inverted: share(Family::Inverted),
-            late: share(Family::Late),
-            random: share(Family::Random),
-        }
-    }
-}
 
 /// A label of a mission, and the step that read it.
 #[derive(Clone, Copy)]
@@ -82,16 +60,26 @@ impl DiagnosisRecord {
         });
         let steps = fewest.disagreeing.iter().map(|k| all[*k].0).filter(|step| *step > 0);
         let near = belief.centre().map_or(fewest.line, Line::from);
-        let (cause, shares, tolerance) = if mission.is_noisy() {
-            let (cause, metres) = of_doubtful(mission, &read, &fewest.line, alarm);
-            (cause, None, metres)
-        } else {
-            let explanation = of_true(mission, &read, &near);
-            let shares = Shares::of(&explanation);
-            let is_possible = shares.bend + shares.drift >= POSSIBLE;
-            let covering = explanation.covering(COVERING).filter(|_| is_possible);
-            (explanation.cause(), Some(shares), covering)
+        let is_noisy = mission.is_noisy();
+        // Where labels may be wrong, those of a trusted ball count as given.
+        let doubtful = read.iter().filter(|it| !is_noisy || !it.is_trusted);
+        let doubtful: Vec<_> = doubtful.map(|it| (it.sample, it.step as u32)).collect();
+        let explanation = Explanation::of(&Question {
+            given,
+            read: &doubtful,
+            p: is_noisy.then(|| mission.noise.map_or(1.0, |noise| noise.p)),
+            tolerance: mission.config.tolerance.metres(),
+            line: if is_noisy { &fewest.line } else { &near },
+        });
+        // What the tests for whole missions leave open the evidence may suspect.
+        let cause = match (explanation.cause, alarm.map(|alarm| alarm.suspect)) {
+            (Cause::Line, Some(Suspect::Stuck)) if is_noisy => Cause::Stuck,
+            (Cause::Line, Some(Suspect::Inverted)) if is_noisy => Cause::Inverted,
+            (Cause::Line, _) if is_noisy => Cause::Unclear,
+            (cause, _) => cause,
         };
+        let rounded = |share: f64| (1e3 * share).round() / 1e3;
+        let shares = explanation.shares.into_iter().map(|(cause, it)| (cause, rounded(it)));
         Some(Self {
             refuting,
             line: fewest.line.into(),
@@ -100,48 +88,9 @@ impl DiagnosisRecord {
             share: fewest.disagreeing.len() as f64 / samples.len() as f64,
             steps: steps.collect(),
             cause,
-            shares,
-            tolerance: tolerance.filter(|metres| *metres > 0.0).map(rounded_up),
+            shares: shares.collect(),
+            tolerance: explanation.tolerance.filter(|metres| *metres > 0.0).map(rounded_up),
         })
-    }
-}
-
-/// What explains labels that are said to be true.
-fn of_true(mission: &Mission, read: &[Taken], near: &Line) -> Explanation {
-    let read: Vec<_> = read.iter().map(|it| (it.sample, it.step as u32)).collect();
-    let tolerance = mission.config.tolerance;
-    Explanation::of(&Told { given: mission.given.samples(), read: &read, tolerance, near })
-}
-
-/// What explains labels that may be wrong, by the tests for recordings; else by what the evidence suspects. Also the
-/// tolerance that covers a bend or a drift: half of its extent.
-fn of_doubtful(
-    mission: &Mission,
-    read: &[Taken],
-    line: &Line,
-    alarm: Option<&AlarmRecord>,
-) -> (Cause, Option<f64>) {
-    let doubtful = read.iter().filter(|it| !it.is_trusted);
-    let (at, is_positive): (Vec<_>, Vec<_>) = doubtful
-        .map(|it| (Point2::<f64>::from(it.sample.site), it.sample.label == Label::Positive))
-        .unzip();
-    let p = mission.noise.map_or(1.0, |noise| noise.p);
-    let tolerance = mission.config.tolerance.metres();
-    let question = Question { at: &at, is_positive: &is_positive, line, p, tolerance };
-    match Fit::of(&question).verdict {
-        Verdict::Bend { sagitta, .. } => (Cause::Bend, Some(0.5 * sagitta)),
-        Verdict::TwoLines { .. } => (Cause::Bend, None),
-        Verdict::Drift { metres, .. } => (Cause::Drift, Some(0.5 * metres)),
-        Verdict::Stretch { fault: Fault::Stuck(_), .. } => (Cause::Stuck, None),
-        Verdict::Stretch { fault: Fault::Inverted, .. } => (Cause::Inverted, None),
-        Verdict::Stretch { fault: Fault::Coin, .. } | Verdict::Row(_) | Verdict::TooHigh => {
-            (Cause::Random, None)
-        }
-        Verdict::Fits | Verdict::TooLow => match alarm.map(|alarm| alarm.suspect) {
-            Some(Suspect::Stuck) => (Cause::Stuck, None),
-            Some(Suspect::Inverted) => (Cause::Inverted, None),
-            _ => (Cause::Unclear, None),
-        },
     }
 }
 

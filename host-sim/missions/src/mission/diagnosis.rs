@@ -1,5 +1,7 @@
 //! The record of a mission whose labels no straight, still line explains.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::fitting::explanation::Cause;
@@ -22,12 +24,12 @@ pub struct DiagnosisRecord {
     pub share: f64,
     /// The steps of those that do. Others are given samples.
     pub steps: Vec<usize>,
-    /// What explains the labels: `bend`, `drift`, `stuck`, `inverted`, `stuck or inverted` (both read the same), `late`, `random`,
+    /// What explains the labels: `bend`, `drift`, `two boundaries`, `stuck`, `inverted`, `stuck or inverted` (both read the same), `late`, `random`,
     /// `line` (a straight line does all the same), `cannot tell`.
     pub cause: Cause,
     /// Where labels are true: the probability of each cause, if all are alike beforehand.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shares: Option<Shares>,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub shares: BTreeMap<Cause, f64>,
     /// The tolerance that covers a bend or a drift as the labels have it, metres: with probability 0.9 where labels are
     /// true. It is there if one of the two may be the cause.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -47,23 +49,4 @@ pub struct RefutingRecord {
     pub label: i8,
     /// The label that all lines left have there.
     pub expected: i8,
-}
-
-/// How likely each cause is, if all are alike beforehand.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Shares {
-    /// A straight, still line.
-    pub line: f64,
-    /// A boundary that bends.
-    pub bend: f64,
-    /// One that moves.
-    pub drift: f64,
-    /// A sensor that repeats a label.
-    pub stuck: f64,
-    /// One that reads the other label.
-    pub inverted: f64,
-    /// Labels some samples late.
-    pub late: f64,
-    /// Labels that are wrong at random.
-    pub random: f64,
 }

@@ -239,15 +239,6 @@ fn through([p, q]: [Site; 2], are_alike: bool) -> Bound {
     Bound { through: p, along: if are_alike { q - p } else { p - q } }
 }
 
-/// The vertices of a set of lines whose samples that matter, in cyclic order, are these: what
-/// [`CellView::bounds`] are for a cell, for a list of any length.
-pub fn bounds(
-    support: impl Iterator<Item = Sample> + Clone,
-) -> impl Iterator<Item = Bound> + Clone {
-    let next = support.clone().cycle().skip(1);
-    support.zip(next).map(|(p, q)| bound(p, q))
-}
-
 /// [`CellView::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Constraint], samples: &[Sample], q: Site) -> Certainty {
