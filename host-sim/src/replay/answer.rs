@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, Result, anyhow};
 use nalgebra::{Point2, Vector2};
+use planner_core::belief::estimate;
 use planner_core::{Area, Belief as _, Label, Line, Sample, VersionSpace};
 
 use crate::fitting::doubt::{Doubt, Votes};
@@ -13,7 +14,6 @@ use crate::fitting::line_set::{self, ByNormal, intercepts, slope_arcs};
 use crate::fitting::outlier::{Repeats, outliers};
 use crate::fitting::patch::{Mass, Patch};
 use crate::fitting::separation::{NoSeparation, Separation, are_separable};
-use crate::fitting::shortest_pairs::bisector;
 use crate::mission::read_out::LEVEL;
 use crate::replay::fit_words::Words;
 use crate::replay::sample_file::SampleFile;
@@ -32,6 +32,9 @@ pub struct Trust {
 /// The reliability by which the likeliest line of labels is found that no line separates, if none is given.
 const SUPPOSED: f64 = 0.9;
 
+/// Of more samples the paper's estimate is not looked for: it compares each two.
+const MOST_PAIRED: usize = 5_000;
+
 /// As many samples as a planner holds.
 const MOST_HELD: usize = 128;
 
@@ -49,7 +52,7 @@ pub(crate) struct Answer {
     /// The mean of the lines.
     pub(crate) centre: Option<Line>,
     pub(crate) maximum_margin: Option<Line>,
-    /// The paper's estimate, of labels and positions that are true.
+    /// The paper's estimate, of labels and positions that are true, if they are few.
     pub(crate) bisector: Option<Line>,
     /// Metres, where positions may be off.
     pub(crate) tolerance: Option<f64>,
@@ -108,13 +111,14 @@ fn certain(file: &SampleFile, tolerance: Option<f64>) -> Result<Answer> {
              a smaller --tolerance"
         ),
     })?;
+    let is_short = tolerance.is_none() && samples.len() <= MOST_PAIRED;
     let mut answer = Answer {
         bounding: lines.support(),
         slope_arcs: lines.slope_arcs(),
         intercept: lines.intercepts(),
         centre: line_set::line(lines.centre()),
         maximum_margin: lines.maximum_margin().and_then(line_set::line),
-        bisector: bisector(&rows).filter(|_| tolerance.is_none()).map(Line::from),
+        bisector: if is_short { estimate::bisector(samples).map(Line::from) } else { None },
         tolerance,
         doubt: None,
         fit: Explanation::agreeing(samples.len()),

@@ -41,21 +41,37 @@ fn best_line(record: &DiagnosisRecord, line: &str) -> String {
     format!("{line}. {disagreeing} of {labels} labels {verb} with it ({percent:.1} %){which}.")
 }
 
-/// A cause in words.
-fn words(cause: Cause) -> &'static str {
+/// A cause in words, and what to do.
+fn words(cause: Cause) -> [&'static str; 2] {
+    const SENSOR: &str = "check the sensor at a place of either label, and fly again";
     match cause {
-        Cause::Line => "a straight, still line",
-        Cause::Bend => "the boundary bends",
-        Cause::Drift => "the boundary moves",
-        Cause::TwoBoundaries => "there are two boundaries, or one with a corner",
-        Cause::Stuck => "the sensor is stuck on a label",
-        Cause::Inverted => "the sensor reads the other label",
-        Cause::StuckOrInverted => {
-            "the sensor is stuck on a label, or reads the other one (both read the same here)"
+        Cause::Line => [
+            "a straight, still line",
+            "fly again. While a line is true, 1 mission in 20 has a warning and 1 in 100 an alarm",
+        ],
+        Cause::Bend => {
+            ["the boundary bends", "take a shorter stretch (half of it bends a quarter as much)"]
         }
-        Cause::Late => "labels come some samples late",
-        Cause::Random => "labels are wrong at random",
-        Cause::Unclear => "the labels cannot tell",
+        Cause::Drift => ["the boundary moves", "take less time"],
+        Cause::TwoBoundaries => [
+            "there are two boundaries, or one with a corner",
+            "split the area so that each part has one straight boundary",
+        ],
+        Cause::Stuck => ["the sensor is stuck on a label", SENSOR],
+        Cause::Inverted => ["the sensor reads the other label", SENSOR],
+        Cause::StuckOrInverted => [
+            "the sensor is stuck on a label, or reads the other one (both read the same here)",
+            SENSOR,
+        ],
+        Cause::Late => [
+            "labels come some samples late",
+            "let the sensor settle before it reads, or check its clock",
+        ],
+        Cause::Random => [
+            "labels are wrong at random",
+            "check the sensor. If some labels are wrong, say how often they are right: noise = { p = 0.9 }",
+        ],
+        Cause::Unclear => ["the labels cannot tell", "check the sensor, take a shorter stretch"],
     }
 }
 
@@ -67,7 +83,7 @@ fn explanation(record: &DiagnosisRecord) -> String {
     if record.cause == Cause::Unclear {
         let each = likely
             .iter()
-            .map(|(cause, share)| format!("{} ({})", words(**cause), percent(**share)));
+            .map(|(cause, share)| format!("{} ({})", words(**cause)[0], percent(**share)));
         let each: Vec<_> = each.collect();
         return match each.split_last() {
             None => "the labels cannot tell.".to_owned(),
@@ -87,31 +103,18 @@ fn explanation(record: &DiagnosisRecord) -> String {
     } else {
         format!(", with a probability of {}", percent(share))
     };
-    format!("{}{share}.", words(record.cause))
+    format!("{}{share}.", words(record.cause)[0])
 }
 
 /// What to do.
 fn advice(record: &DiagnosisRecord) -> String {
-    let cover = record.tolerance.map(|metres| {
-        format!("a tolerance of {metres} m, which covers a bend or a drift as these labels have it")
-    });
-    let or_cover = |what: &str| match &cover {
-        Some(cover) => format!("{what}, or {cover}."),
-        None => format!("{what}."),
-    };
-    match record.cause {
-        Cause::Line => "fly again. While a line is true, 1 mission in 20 has a warning and 1 in 100 an alarm.".to_owned(),
-        Cause::Bend => or_cover("take a shorter stretch (half of it bends a quarter as much)"),
-        Cause::Drift => or_cover("take less time"),
-        Cause::TwoBoundaries => "split the area so that each part has one straight boundary.".to_owned(),
-        Cause::Stuck | Cause::Inverted | Cause::StuckOrInverted => {
-            "check the sensor at a place of either label, and fly again.".to_owned()
+    let [_, what] = words(record.cause);
+    match record.tolerance {
+        Some(metres) if matches!(record.cause, Cause::Bend | Cause::Drift | Cause::Unclear) => {
+            format!(
+                "{what}, or a tolerance of {metres} m, which covers a bend or a drift as these labels have it."
+            )
         }
-        Cause::Late => "let the sensor settle before it reads, or check its clock.".to_owned(),
-        Cause::Random => {
-            "check the sensor. If some labels are wrong, say how often they are right: noise = { p = 0.9 }."
-                .to_owned()
-        }
-        Cause::Unclear => or_cover("check the sensor, take a shorter stretch"),
+        _ => format!("{what}."),
     }
 }

@@ -19,4 +19,3 @@ pub mod line_set;
 pub mod outlier;
 pub mod patch;
 pub mod separation;
-pub mod shortest_pairs;

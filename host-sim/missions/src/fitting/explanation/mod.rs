@@ -133,14 +133,14 @@ impl Explanation {
 
     /// The verdict in a word or three.
     pub fn verdict(&self) -> &'static str {
-        match (self.found, self.disagreeing) {
-            (Some(Found::Bend { .. }), _) => "bend",
-            (Some(Found::Drift { .. }), _) => "drift",
-            (Some(Found::TwoBoundaries { .. }), _) => "two boundaries",
-            (Some(Found::Stretch { .. }), _) => "run",
-            (None, count) if count > self.expected[1] => "p too high",
-            (None, count) if count < self.expected[0] => "p too low",
-            (None, _) => "fits",
+        match self.found {
+            Some(Found::Bend { .. }) => "bend",
+            Some(Found::Drift { .. }) => "drift",
+            Some(Found::TwoBoundaries { .. }) => "two boundaries",
+            Some(Found::Stretch { .. }) => "run",
+            None if self.disagreeing > self.expected[1] => "p too high",
+            None if self.disagreeing < self.expected[0] => "p too low",
+            None => "fits",
         }
     }
 
