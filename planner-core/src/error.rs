@@ -3,6 +3,7 @@
 pub use crate::belief::ObservationError;
 pub use crate::belief::observation_log::ReplayError;
 pub use crate::belief::true_labels::GivenError;
+pub use crate::geometry::chart::ChartError;
 pub use crate::geometry::hull::HullError;
 pub use crate::geometry::lattice::LatticeError;
 pub use crate::geometry::polygon_area::PolygonAreaError;

@@ -77,6 +77,7 @@
 //! | a large area, few labels | [`Far`] sight: [`Lookahead::seeing`] |
 //! | no label that hardly tells | [`AnySight::with_least_bits`]: [`Lookahead::seeing`] |
 //! | a field that is no rectangle, places to keep out of | [`PolygonArea`] and [`KeepOut`] |
+//! | a lake of any shape | [`Charted`] and [`Chart`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
 //! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
 //! | to switch the chip off between motions | [`Persist`], with the feature `serde` |
@@ -192,6 +193,8 @@ pub use crate::belief::unknown_reliability::UnknownReliability;
 pub use crate::belief::weight::Prior;
 pub use crate::geometry::arc::SlopeArc;
 pub use crate::geometry::area::Area;
+pub use crate::geometry::chart::Chart;
+pub use crate::geometry::charted::Charted;
 pub use crate::geometry::heading::{Angle, Heading};
 pub use crate::geometry::hull::Hull;
 pub use crate::geometry::lattice::{Site, Vector};

@@ -197,6 +197,11 @@ impl Extent {
         Self { low: Vector { x, z }, high }
     }
 
+    /// How high it is, lattice units; 0 of nothing.
+    pub(crate) fn height(self) -> u32 {
+        self.high.z.checked_sub(self.low.z).and_then(|it| it.try_into().ok()).unwrap_or(0)
+    }
+
     /// Whether it holds a site.
     pub(crate) fn holds(self, site: Site) -> bool {
         (self.low.x..=self.high.x).contains(&site.x())

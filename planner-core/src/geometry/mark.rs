@@ -33,6 +33,12 @@ impl Mark {
             let corners = it.corners.iter().flat_map(|at| [at.x() as u32, at.z() as u32]);
             corners.chain([it.radius])
         });
-        self.and([bounds.margin()]).and(places).and(keep_outs)
+        let chart = area.chart().into_iter().flat_map(|it| {
+            let (corner, [columns, rows]) = (it.bounds().min(), it.size());
+            let frame =
+                [corner.x() as u32, corner.z() as u32, it.side(), columns.into(), rows.into()];
+            frame.into_iter().chain(it.cells().iter().copied())
+        });
+        self.and([bounds.margin()]).and(places).and(keep_outs).and(chart)
     }
 }

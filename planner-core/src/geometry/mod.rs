@@ -8,6 +8,8 @@ pub(crate) mod angle;
 pub(crate) mod approximate;
 pub mod arc;
 pub mod area;
+pub mod chart;
+pub mod charted;
 pub mod heading;
 pub mod hull;
 pub mod lattice;

@@ -1,6 +1,7 @@
 //! Where motions may go: a convex area without its keep-outs.
 
 use crate::geometry::area::Area;
+use crate::geometry::chart::Chart;
 use crate::geometry::hull::{Extent, are_apart_beside};
 use crate::geometry::lattice::{LIMIT, Site, UNITS_PER_METRE, Vector};
 use crate::geometry::value::ValueError;
@@ -58,15 +59,27 @@ pub trait Workspace: Copy {
         core::iter::empty()
     }
 
+    /// The cells that motions stay on, if not all ground inside the border is open.
+    fn chart(&self) -> Option<Chart<'_>> {
+        None
+    }
+
+    /// Whether motions may go everywhere inside the border.
+    fn is_open(&self) -> bool {
+        self.keep_outs().next().is_none() && self.chart().is_none()
+    }
+
     /// Whether a position lies inside the area's border or on it, be it in a keep-out or not.
     fn encloses(&self, q: Site) -> bool {
         self.bounds().contains(q) && self.sides().all(|side| side.at(q) >= 0)
     }
 
-    /// Whether all of a hull is further than `by` lattice units from all keep-outs and their margins.
+    /// Whether all of a hull is further than `by` lattice units from all keep-outs and closed cells, and their margins.
     fn is_clear(&self, hull: &[Site], by: u32) -> bool {
         let extent = Extent::of(hull);
+        let margin = self.bounds().margin();
         self.keep_outs().all(|it| !it.is_near(extent, by) || it.is_apart_beside(hull, by))
+            && self.chart().is_none_or(|it| it.holds(hull, margin.saturating_add(by)))
     }
 
     /// How far inside the border a position lies, in lattice units or somewhat less; negative outside.
@@ -109,14 +122,20 @@ pub trait Workspace: Copy {
             && self.is_clear(&[centre], radius.unsigned_abs())
     }
 
-    /// Whether a motion stays clear of all keep-outs. `swept` are the corners of the hull that the motion sweeps. The
+    /// Whether a motion stays clear of all keep-outs and closed cells. `swept` are the corners of the hull that the motion sweeps. The
     /// hull may not come nearer to a keep-out than its margin.
     ///
     /// If an error has brought the agent too near to a keep-out, a motion from there need only stay out of the keep-out
     /// itself.
     fn lets_pass(&self, swept: &[Site]) -> bool {
         let extent = Extent::of(swept);
+        let margin = self.bounds().margin();
         self.keep_outs().all(|it| !it.is_near(extent, 0) || it.lets_pass(swept))
+            && self.chart().is_none_or(|it| {
+                let start = swept.get(..1).unwrap_or_default();
+                it.holds(swept, margin)
+                    || !it.holds(start, margin) && (!it.holds(start, 0) || it.holds(swept, 0))
+            })
     }
 }
 

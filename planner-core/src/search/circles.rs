@@ -262,7 +262,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         let area = self.view.area();
         if !area.contains(target.site) {
             // Where a rectangle ends is seen before. Of other areas it may not be.
-            let is_plain = area.sides().next().is_none() && area.keep_outs().next().is_none();
+            let is_plain = area.sides().next().is_none() && area.is_open();
             return Err(if is_plain { 0 } else { HEMMED_IN });
         }
         if !self.view.can_cut(target.site) {

@@ -6,6 +6,8 @@
 //!
 //! A motion may end a step short of a waypoint. So the octagon leaves a space of two steps, and waypoints see each
 //! other only past keep-outs that are at least a step away. Then the next waypoint is in sight from there.
+//!
+//! Where cells are charted, the way leads along these (`channel.rs`).
 
 use heapless::Vec;
 
@@ -14,6 +16,7 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::span::Span;
 use crate::geometry::workspace::{Obstacle, Workspace};
+use crate::search::channel;
 use crate::search::objective::Effort;
 use crate::search::view::View;
 
@@ -76,10 +79,15 @@ fn begin_by<G: Workspace>(
     effort: &mut Effort,
     way_out: impl Fn(Site) -> Option<(Vector, f32)>,
 ) -> Option<Way> {
-    if area.keep_outs().next().is_none() {
+    if area.is_open() {
         return Some(Way::Straight(straight));
     }
     let mut best = way_out(from).map(|(way, length)| (Way::Straight(way), length));
+    if let Some(chart) = area.chart() {
+        let straight = best.map(|(way, _)| way);
+        let round = || channel::begin((area, chart, step), from, effort, way_out).map(Way::Round);
+        return straight.or_else(round);
+    }
     let mut waypoints: Vec<Waypoint, MOST, u8> = Vec::new();
     for keep_out in area.keep_outs() {
         for site in octagon(&keep_out, 2.0 * step).into_iter().flatten() {

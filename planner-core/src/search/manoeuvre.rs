@@ -115,7 +115,9 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Workspace>(
 /// Where the way round keep-outs to uncertain ground begins, if there are any.
 pub(crate) fn waypoint<D: Dynamics, G: Workspace>(search: &mut Search<'_, D, G>) -> Option<Site> {
     let (view, from) = (&search.view, search.pose.site);
-    view.area().keep_outs().next()?;
+    if view.area().is_open() {
+        return None;
+    }
     let way = view.way_out()?;
     let (Way::Straight(way) | Way::Round(way)) =
         detour::begin(&search.view, from, way, &mut search.effort)?;

@@ -11,6 +11,7 @@
 //! nothing is known. A `chord` is the part of an estimate that lies in
 //! the area.
 
+mod channel;
 pub(crate) mod chord;
 pub(crate) mod circles;
 pub(crate) mod course;

@@ -137,7 +137,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
             let [Ok(from), Ok(to)] = centres else { return false };
             area.contains_disc(from, radius)
                 && area.contains_disc(to, radius)
-                && area.keep_outs().all(|it| it.is_clear_of(&[from, to], radius.unsigned_abs()))
+                && area.is_clear(&[from, to], radius.unsigned_abs())
         };
         let stays = area.contains(after.site)
             && area.lets_pass(&[pose.site, after.site])

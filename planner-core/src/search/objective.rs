@@ -20,6 +20,9 @@ const RECTANGLE: u32 = 64;
 const SIDE: u32 = 1;
 const KEEP_OUT: u32 = 6;
 
+/// A look on a chart takes as much longer as with so many keep-outs.
+const CHART: usize = 4;
+
 /// With so many keep-outs no look takes longer than the longest in a rectangle.
 const FEW: usize = 2;
 
@@ -110,7 +113,8 @@ impl Effort {
     /// The same in an area: a look takes longer with each side of its border that cuts the rectangle around it, and with
     /// each keep-out.
     pub(crate) fn within<G: Workspace>(area: &G, looks: u32) -> Self {
-        let (sides, keep_outs) = (area.sides().count(), area.keep_outs().skip(FEW).count());
+        let (sides, mut keep_outs) = (area.sides().count(), area.keep_outs().skip(FEW).count());
+        keep_outs += area.chart().map_or(0, |_| CHART);
         let takes = RECTANGLE + SIDE * sides as u32 + KEEP_OUT * keep_outs as u32;
         Self::of((looks * RECTANGLE).checked_div(takes).unwrap_or(0))
     }
@@ -147,9 +151,10 @@ impl Effort {
 }
 
 /// The looks that it costs to see whether a hull touches a keep-out: one for each keep-out nearby, and one for each two
-/// of its corners.
+/// of its corners; and one for each four rows of a chart.
 pub(crate) fn sweep<G: Workspace>(area: &G, hull: &[Site]) -> u32 {
     let extent = Extent::of(hull);
     let near = area.keep_outs().filter(|it| it.is_near(extent, 0));
-    near.map(|it| 1 + it.corners.len() as u32 / 2).sum()
+    let hulls: u32 = near.map(|it| 1 + it.corners.len() as u32 / 2).sum();
+    hulls + area.chart().map_or(0, |it| 1 + it.rows_of(extent) / 4)
 }
