@@ -123,7 +123,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
         Some(device) => ("the port", Path::new(device)),
         None => ("the firmware", emulated.elf()),
     };
-    let [trace, figure, candidates, report, mcap, map] = args.run.outputs();
+    let [trace, figure, candidates, report, mcap, map, geojson] = args.run.outputs();
     let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
     let growing = trace.1.filter(|_| args.resume);
     if let Some(path) = growing
@@ -131,10 +131,19 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     {
         bail!("{}: found a stream, expected a file with --resume", path.display());
     }
-    let asked =
-        [trace, figure, candidates, report, mcap, map, ("--timing", timing), ("--log", log)];
+    let asked = [
+        trace,
+        figure,
+        candidates,
+        report,
+        mcap,
+        map,
+        geojson,
+        ("--timing", timing),
+        ("--log", log),
+    ];
     let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
-    let [trace, figure, candidates, report, mcap, map, timing, log] = prepared;
+    let [trace, figure, candidates, report, mcap, map, geojson, timing, log] = prepared;
     // Its place will do, and it grows beside it.
     let trace = trace.filter(|_| !args.resume);
     // The emulator writes its log as it goes; it comes to its place when it is whole.
@@ -179,7 +188,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     let (mut played, failure) = played?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
-    let outputs = [trace, figure, candidates, report, mcap, map];
+    let outputs = [trace, figure, candidates, report, mcap, map, geojson];
     let mut text = args.run.tell(outputs, &played.recording)?;
     match (played.logbook.take(), &failure) {
         (Some(logbook), None) => logbook.complete(&played.recording.results.end)?,

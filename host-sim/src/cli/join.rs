@@ -11,8 +11,8 @@ use crate::cli::help;
 use crate::cli::replay::write;
 use crate::output::file::prepare;
 use crate::output::notes::warn;
-use crate::replay::crs::Crs;
 use crate::replay::joined::JoinedMap;
+use crate::world::crs::Crs;
 
 #[derive(Debug, Args)]
 #[command(after_help = help::JOIN)]

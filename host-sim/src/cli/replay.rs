@@ -17,11 +17,11 @@ use crate::output::plain;
 use crate::replay::Report;
 use crate::replay::answer::Trust;
 use crate::replay::columns::Columns;
-use crate::replay::crs::Crs;
 use crate::replay::front::FrontMap;
 use crate::replay::line::Replay;
 use crate::replay::rows::Layout;
 use crate::replay::table_file;
+use crate::world::crs::Crs;
 use crate::world::errors::Errors;
 
 #[derive(Debug, Args)]

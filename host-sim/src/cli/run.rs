@@ -18,7 +18,7 @@ use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
 use crate::report::pieces::Pieces;
-use crate::report::{flat, log, text, trace};
+use crate::report::{flat, log, on_map, text, trace};
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
@@ -51,6 +51,9 @@ pub(crate) struct Run {
     /// Write the map of the front here, a row for each place on it (track)
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) map: Option<PathBuf>,
+    /// Write track, samples and what was found here, in an area from a map
+    #[arg(long, value_name = "FILE.geojson")]
+    pub(crate) geojson: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -79,7 +82,7 @@ pub(crate) struct RunArgs {
         value_name = "PLANNER,...",
         value_delimiter = ',',
         requires = "report",
-        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map"]
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map", "geojson"]
     )]
     compare: Vec<Algorithm>,
 }
@@ -133,6 +136,9 @@ impl Run {
         if self.map.is_some() && mission.algorithm.seeks_line() {
             let planner = mission.algorithm.name();
             bail!("--map: found algorithm {planner}, expected track, which maps a front");
+        }
+        if self.geojson.is_some() && mission.lake.is_none() {
+            bail!("--geojson: found an area in metres, expected one from a map (area.geojson)");
         }
         mission.warn(&self.name());
         Ok(mission)
@@ -189,7 +195,7 @@ impl Run {
         ("the scenario", &self.scenario)
     }
 
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 6] {
+    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 7] {
         [
             ("--trace", self.trace.as_deref()),
             ("--figure", self.figure.as_deref()),
@@ -197,16 +203,17 @@ impl Run {
             ("--report", self.report.as_deref()),
             ("--mcap", self.mcap.as_deref()),
             ("--map", self.map.as_deref()),
+            ("--geojson", self.geojson.as_deref()),
         ]
     }
 
     /// Writes the trace, the figures and the page that were asked for; what to print.
     pub(crate) fn tell(
         &self,
-        outputs: [Option<Output>; 6],
+        outputs: [Option<Output>; 7],
         recording: &Recording,
     ) -> Result<String> {
-        let [trace, figure, candidates, report, mcap, map] = outputs;
+        let [trace, figure, candidates, report, mcap, map, geojson] = outputs;
         let name = self.name();
         let title = self.title();
         let lines = trace::lines(&recording.results);
@@ -218,7 +225,9 @@ impl Run {
         let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
         let pieces = || Pieces::of(&recording.results);
         let vertices = map.as_ref().map(|_| pieces().csv("step", None, &[])).transpose()?;
+        let features = geojson.as_ref().map(|_| on_map::geojson(recording)).transpose()?;
         for (output, content) in [
+            (geojson, features.as_ref().map(String::as_bytes)),
             (trace, Some(lines.as_bytes())),
             (figure, svg.as_ref().map(String::as_bytes)),
             (candidates, fewest.as_ref().map(String::as_bytes)),

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use planner_core::link::message::MissionArea;
 use planner_core::robot::AgentError;
 use planner_core::robot::Body;
 use planner_core::{Agent, Event, Motion, Planner as _, Pose, Reading, Site};
@@ -17,7 +16,7 @@ use crate::mission::flight::Flown;
 use crate::mission::legs::{Leg, Legs};
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::Ending;
-use crate::mission::terrain::check_inside;
+use crate::mission::terrain::{Terrain, check_inside};
 use crate::output::notes::{announce, count, warn};
 
 /// How long a round waits for a message before it sends what is due.
@@ -35,7 +34,7 @@ pub struct Control<L> {
     pilot: Pilot,
     interrupted: fn() -> Option<i32>,
     /// Where it may be.
-    area: Option<MissionArea>,
+    area: Option<Terrain>,
     /// The motions so far, and the time from which theirs are counted.
     legs: Vec<Leg>,
     began: Duration,
@@ -112,7 +111,7 @@ impl<L: Link> Control<L> {
     fn start(&mut self, mission: &Mission) -> Result<Pose, Failure> {
         let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::LatticeError)?;
         let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::LatticeError)?;
-        self.area = Some(mission.config.area);
+        self.area = Some(mission.terrain());
         self.began = self.link.now();
         self.check(pose)?;
         let off = fix.at.distance(mission.start.site.into());

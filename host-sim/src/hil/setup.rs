@@ -36,6 +36,9 @@ fn check_sensor(mission: &Mission, labels: LabelSource) -> Result<()> {
 /// # Errors
 /// When no chip can fly such a mission.
 pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
+    if mission.lake.is_some() {
+        return wrong("area", "a map with hil", "metres: cells are not sent to a board");
+    }
     if mission.goal.is_some() && !mission.audits {
         bail!("stop.audit: found false, expected true: a board always audits");
     }

@@ -17,7 +17,6 @@ use crate::mission::results::PTold;
 use crate::output::file;
 use crate::output::notes::progress;
 use crate::replay::answer::Trust;
-use crate::replay::frame::Frame;
 use crate::replay::geojson::collection;
 use crate::replay::placed_map::{PlaceRecord, PlacedMap};
 use crate::replay::rows::{Layout, Skipped};
@@ -27,6 +26,7 @@ use crate::replay::{MOST_NAMED, Report};
 use crate::report::picture::Dot;
 use crate::report::pieces::Pieces;
 use crate::report::{front, look};
+use crate::world::frame::Frame;
 
 /// Rows that are taken in between two looks at the progress.
 const ROWS: usize = 1_000;

@@ -2,45 +2,14 @@
 
 use std::iter;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result};
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
-use nalgebra::Point2;
 use planner_core::{Area, Sample};
 use serde_json::{Value, json};
 
-use crate::replay::frame::Frame;
 use crate::replay::sample_file::SampleFile;
 use crate::report::picture::area_around;
-use crate::world::extent::span;
 use crate::world::polygon::Polygon;
-
-impl Frame {
-    /// Checks that positions have a place on the globe, all on one side of the 180th meridian. `name` is what they are
-    /// of, and `or` another way to have one.
-    ///
-    /// # Errors
-    /// Names what was found and what was expected.
-    pub(crate) fn check_globe(
-        &self,
-        (name, or): (&str, &str),
-        places: impl Iterator<Item = Point2<f64>>,
-    ) -> Result<()> {
-        if !self.is_on_globe() {
-            bail!(
-                "--geojson: found positions in metres in {name}, expected latitude and longitude{or}, or the system of the \
-                 metres (--crs EPSG:...)"
-            );
-        }
-        let lons = places.map(|at| Ok(self.degrees(at)?[0])).collect::<Result<Vec<_>>>()?;
-        let [least, most] = span(lons);
-        if most - least > 180.0 {
-            bail!(
-                "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
-            );
-        }
-        Ok(())
-    }
-}
 
 impl SampleFile {
     /// The area around the samples, if it has a place on the globe.

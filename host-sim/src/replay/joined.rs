@@ -11,14 +11,13 @@ use crate::mission::join::{self, Joined, Place};
 use crate::mission::map::{State, median_and_most};
 use crate::output::file;
 use crate::replay::Report;
-use crate::replay::crs::Crs;
-use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::geojson::collection;
 use crate::replay::map_file::MapFile;
 use crate::replay::placed_map::{PlaceRecord, PlacedMap};
-use crate::replay::rows::Layout;
 use crate::report::front::{extent, within};
 use crate::report::pieces::Pieces;
+use crate::world::crs::Crs;
+use crate::world::frame::{Frame, check_degrees};
 
 /// Maps of one front, and what they are together.
 pub struct JoinedMap {
@@ -85,8 +84,7 @@ impl JoinedMap {
                 .map_err(|error| anyhow!("{}:{}: {error}", file.name, row.line))?;
         }
         let positions: Vec<_> = rows().map(|(_, row)| row.position).collect();
-        let layout = Layout { crs: crs.cloned(), ..Layout::default() };
-        let frame = Frame::of(&positions, first.is_geographic(), &layout)?;
+        let frame = Frame::of(&positions, first.is_geographic(), None, crs)?;
         let robots = files.iter().map(|it| in_frame(it, &frame)).collect::<Result<Vec<_>>>()?;
         let joined = Joined::of(&robots);
         let is_of_steps = files.iter().all(|it| it.numbers == "step");

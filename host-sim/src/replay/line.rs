@@ -16,7 +16,6 @@ use crate::output::file;
 use crate::replay::answer::{Answer, Trust};
 use crate::replay::fit_record::FitRecord;
 use crate::replay::fit_words::Words;
-use crate::replay::frame::Frame;
 use crate::replay::geojson::{collection, feature};
 use crate::replay::rows::{Layout, Skipped};
 use crate::replay::sample_file::SampleFile;
@@ -26,6 +25,7 @@ use crate::report::look::{self, DISAGREES};
 use crate::report::picture::{Dot, Drawn, Picture, area_around};
 use crate::report::style::ESTIMATE;
 use crate::report::text;
+use crate::world::frame::Frame;
 use crate::world::polygon::Polygon;
 
 /// Samples that a figure shows beside those that bound the line.

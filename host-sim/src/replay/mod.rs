@@ -2,7 +2,6 @@
 
 pub mod answer;
 pub mod columns;
-pub mod crs;
 mod degrees;
 mod encoding;
 #[cfg(test)]
@@ -10,7 +9,6 @@ mod false_alarms;
 mod fills;
 mod fit_record;
 mod fit_words;
-mod frame;
 pub mod front;
 pub mod geojson;
 pub mod geojson_file;

@@ -11,10 +11,10 @@ use serde_json::{Value, json};
 
 use crate::mission::front::VertexRecord;
 use crate::replay::MOST_NAMED;
-use crate::replay::frame::Frame;
 use crate::replay::geojson::feature;
 use crate::report::picture::{Dot, Picture};
 use crate::report::pieces::{OWN, Pieces};
+use crate::world::frame::Frame;
 
 /// A map of a front.
 pub(crate) struct PlacedMap {

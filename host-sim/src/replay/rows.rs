@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use crate::mission::results::{Name, Start, StepResult};
 use crate::replay::columns::Columns;
-use crate::replay::crs::Crs;
+use crate::world::crs::Crs;
 
 /// How a file is to be read, as far as flags say.
 #[derive(Clone, Debug, Default)]

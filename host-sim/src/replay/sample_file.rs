@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use crate::output::{kind, plain};
 use crate::replay::columns::Columns;
-use crate::replay::frame::{Frame, check_degrees};
 use crate::replay::rows::{Layout, Recorded, Rows, Skipped, Told, Unit};
 use crate::replay::{encoding, geojson_file, gpx_file, table_file, trace_file};
+use crate::world::frame::{Frame, check_degrees};
 
 /// Samples in the order in which they were recorded.
 pub(crate) struct SampleFile {
@@ -103,7 +103,7 @@ impl SampleFile {
             );
         }
         let positions: Vec<_> = rows.samples.iter().map(|it| it.position).collect();
-        let frame = Frame::of(&positions, rows.is_geographic, layout)
+        let frame = Frame::of(&positions, rows.is_geographic, layout.origin, layout.crs.as_ref())
             .map_err(|error| anyhow!("{name}: {error}"))?;
         let sample = |(index, it): (usize, &Recorded)| {
             let site =

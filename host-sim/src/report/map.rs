@@ -152,6 +152,12 @@ impl<'a> Map<'a> {
         }
         self.fill(DOUBTFUL, &self.picture.doubtful.0, "labels may be wrong here");
         self.front_ground();
+        if !self.picture.shores.is_empty() {
+            let rings = self.picture.shores.iter().map(|ring| self.spots(ring));
+            let land: Vec<_> = [self.border.clone()].into_iter().chain(rings).collect();
+            self.sheet.ground(KEEP_OUT, &land);
+            self.sheet.name(Look::Ground(KEEP_OUT), "land");
+        }
         for hull in self.picture.area.hulls() {
             let Polygon(outline) = Polygon::from(hull);
             if outline.len() == 2 {

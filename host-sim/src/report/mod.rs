@@ -14,6 +14,7 @@ pub mod ground;
 pub mod log;
 pub(crate) mod look;
 mod map;
+pub(crate) mod on_map;
 pub mod page;
 pub mod paper;
 pub mod patches;

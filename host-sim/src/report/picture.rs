@@ -33,6 +33,8 @@ pub struct Picture {
     pub note: String,
     /// The ground to show.
     pub area: MissionArea,
+    /// The shores of a lake that motions stay in.
+    pub(crate) shores: Vec<Way>,
     /// What is known of it.
     pub ground: Ground,
     /// What the legend says of ground that has a label, and of the white rest.
@@ -158,6 +160,7 @@ impl Picture {
             title: title.to_owned(),
             note: note.into(),
             area: area.into(),
+            shores: Vec::new(),
             ground: Ground::Plain,
             says: CERTAIN,
             doubtful: Polygon(Vec::new()),
@@ -252,6 +255,11 @@ impl Picture {
         let given = oracle.iter().map(|s| dot(s, 0, look::given));
         let samples = given.chain(read.into_iter().map(of_step));
         Self {
+            shores: mission
+                .lake
+                .iter()
+                .flat_map(|it| it.polygons.iter().flatten().cloned())
+                .collect(),
             ground: Ground::of(&**belief, *area),
             says: if audit.is_some_and(|it| it.refuted.is_some()) { REFUTED } else { CERTAIN },
             samples: samples.chain(audited).collect(),

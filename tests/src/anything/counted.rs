@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use planner_core::geometry::lattice::Vector;
 use planner_core::geometry::workspace::{HalfPlane, Obstacle};
-use planner_core::{Area, Site, Workspace};
+use planner_core::{Area, Chart, Site, Workspace};
 
 thread_local! {
     static ASKED: Cell<u64> = const { Cell::new(0) };
@@ -56,6 +56,10 @@ impl<G: Workspace> Workspace for Counted<G> {
 
     fn keep_outs(&self) -> impl Iterator<Item = Obstacle<'_>> {
         self.0.keep_outs()
+    }
+
+    fn chart(&self) -> Option<Chart<'_>> {
+        self.0.chart()
     }
 
     fn encloses(&self, q: Site) -> bool {

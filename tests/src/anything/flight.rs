@@ -95,8 +95,8 @@ pub fn sleep<P: Sleeper>(planner: P, make: &impl Fn() -> P) -> P {
 /// # Panics
 /// When a planner panics.
 pub fn fly<D: Dynamics + Copy>(mission: &Mission, vehicle: D, most_asked: u64) -> Flight {
-    let area = Counted(mission.config.area);
-    let fly = Fly { mission, vehicle, ground: Ground::of(&mission.config.area), most_asked };
+    let area = Counted(mission.terrain());
+    let fly = Fly { mission, vehicle, ground: Ground::of_mission(mission), most_asked };
     match (mission.algorithm, mission.is_noisy()) {
         _ if mission.begins_from_nothing() => {
             let (mut flight, seek, pose) = fly.flown(|| mission.seek(vehicle));
@@ -249,7 +249,7 @@ impl<D: Dynamics> Fly<'_, D> {
         if let Some(wrong) = self.leaves(pose, motion) {
             flight.note(Finding::Unsafe, wrong);
         }
-        let is_safe = |pose| self.vehicle.is_safe(pose, &self.mission.config.area);
+        let is_safe = |pose| self.vehicle.is_safe(pose, &self.mission.terrain());
         let gives_up = is_safe(pose) && !is_safe(motion.target);
         let is_strict = self.mission.config.tolerance == Tolerance::NONE;
         if gives_up && is_strict || self.vehicle.target(pose, motion.action) != Some(motion.target)

@@ -1,6 +1,7 @@
 //! The harness's own geometry: paths as points in metres, and how far they leave an area. It shares no code with the
 //! planner.
 
+use host_sim::mission::definition::Mission;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Pose, Site};
@@ -20,16 +21,29 @@ pub struct Ground {
     pub border: Vec<Point>,
     /// Keep-outs: all within a radius of a hull.
     pub keep_outs: Vec<(Vec<Point>, f64)>,
+    /// The shores of a lake, if it is one: a point is in the water if an odd number of sides lies beyond it.
+    pub shores: Vec<Vec<Point>>,
 }
 
 impl Ground {
     /// The ground of a mission.
+    pub fn of_mission(mission: &Mission) -> Self {
+        let rings = mission.lake.iter().flat_map(|it| it.polygons.iter().flatten());
+        let shores = rings.map(|ring| ring.iter().map(|at| [at.x, at.y]).collect()).collect();
+        Self { shores, ..Self::of(&mission.config.area) }
+    }
+
+    /// The ground of an area.
     pub fn of(area: &MissionArea) -> Self {
         let points = |sites: &[Site]| sites.iter().map(|site| metres(*site)).collect::<Vec<_>>();
         let keep_out = |it: &planner_core::geometry::polygon_area::KeepOut<_>| {
             (points(it.hull.corners()), f64::from(it.radius) / f64::from(UNITS_PER_METRE))
         };
-        Self { border: points(area.corners()), keep_outs: area.hulls().map(keep_out).collect() }
+        Self {
+            border: points(area.corners()),
+            keep_outs: area.hulls().map(keep_out).collect(),
+            shores: Vec::new(),
+        }
     }
 
     /// How far inside the border a point lies; negative outside.
@@ -47,7 +61,19 @@ impl Ground {
 
     /// How far a point is from where the robot must not be; negative there.
     pub fn margin(&self, p: Point) -> f64 {
-        self.depth(p).min(self.clearance(p))
+        self.depth(p).min(self.clearance(p)).min(self.from_shore(p))
+    }
+
+    /// How far from the shore a point lies; negative on land.
+    fn from_shore(&self, p: Point) -> f64 {
+        let sides = || self.shores.iter().flat_map(|ring| edges(ring));
+        let is_beyond = |(a, b): &(Point, Point)| {
+            (a[1] > p[1]) != (b[1] > p[1])
+                && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        };
+        let is_water = sides().filter(is_beyond).count() % 2 == 1;
+        let off = sides().map(|side| distance_to_edge(p, side)).fold(f64::INFINITY, f64::min);
+        if is_water || self.shores.is_empty() { off } else { -off }
     }
 }
 
@@ -98,11 +124,11 @@ fn distance_to_hull(p: Point, hull: &[Point]) -> f64 {
     if hull.len() > 2 && edges(hull).all(|(a, b)| cross(sub(b, a), sub(p, a)) >= 0.0) {
         return 0.0;
     }
-    let to_edge = |(a, b): (Point, Point)| {
-        let along = sub(b, a);
-        let t = dot(sub(p, a), along) / dot(along, along).max(1e-30);
-        let t = t.clamp(0.0, 1.0);
-        norm(sub(p, [a[0] + t * along[0], a[1] + t * along[1]]))
-    };
-    edges(hull).map(to_edge).fold(f64::INFINITY, f64::min)
+    edges(hull).map(|edge| distance_to_edge(p, edge)).fold(f64::INFINITY, f64::min)
+}
+
+fn distance_to_edge(p: Point, (a, b): (Point, Point)) -> f64 {
+    let along = sub(b, a);
+    let t = (dot(sub(p, a), along) / dot(along, along).max(1e-30)).clamp(0.0, 1.0);
+    norm(sub(p, [a[0] + t * along[0], a[1] + t * along[1]]))
 }

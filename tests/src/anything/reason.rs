@@ -3,10 +3,10 @@
 use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
+use host_sim::mission::terrain::Terrain;
 use planner_core::belief::cells::CellView;
 use planner_core::dynamics::{Dynamics, Side};
 use planner_core::geometry::lattice::Vector;
-use planner_core::link::message::MissionArea;
 use planner_core::{Area, Certainty, Label, Pose, Site, StopReason, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -36,10 +36,10 @@ pub fn refute<D: Dynamics>(
     end: Ending,
 ) -> Option<String> {
     let Ending::Stopped(reason) = end else { return None };
-    let area = mission.config.area.inset(mission.config.tolerance.units()).expect("an area");
+    let area = mission.terrain().inset(mission.config.tolerance.units()).expect("an area");
     // A vehicle that is not safe may use the margin to become safe.
     let is_safe = area.contains(pose.site) && dynamics.is_safe(pose, &area);
-    let ground = if is_safe { area } else { mission.config.area };
+    let ground = if is_safe { area } else { mission.terrain() };
     let judge = Judge { mission, dynamics, belief, area, ground };
     match reason {
         StopReason::SamplesFull => (!belief.is_full()).then(|| "there is room".to_owned()),
@@ -67,9 +67,9 @@ struct Judge<'a, D> {
     dynamics: &'a D,
     belief: &'a dyn ReadOut,
     /// Where motions aim.
-    area: MissionArea,
+    area: Terrain,
     /// Where motions stay.
-    ground: MissionArea,
+    ground: Terrain,
 }
 
 impl<D: Dynamics> Judge<'_, D> {

@@ -10,6 +10,7 @@ mod fields;
 mod fronts;
 mod goals;
 mod honesty;
+mod lakes;
 mod lawnmower;
 mod lookahead;
 mod margin;

@@ -105,6 +105,7 @@ pub fn stretched(
         }
     };
     Mission {
+        lake: None,
         algorithm,
         steps,
         readings: 1,

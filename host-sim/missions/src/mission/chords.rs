@@ -15,7 +15,6 @@ use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::dynamics::{Control, Dynamics};
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::{
     Belief, Heading, Label, Motion, Plan, Planner, Pose, Reading, Sample, Site, StopReason,
     Tolerance, Workspace as _,
@@ -23,6 +22,7 @@ use planner_core::{
 
 use crate::mission::baseline::{motion, take_in};
 use crate::mission::strict::wrong;
+use crate::mission::terrain::Terrain;
 
 /// Bisects two chords, one after the other.
 pub struct Chords<D, B> {
@@ -45,7 +45,10 @@ pub struct Chords<D, B> {
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.
-pub fn check_area(area: &MissionArea) -> Result<()> {
+pub fn check_area(area: &Terrain) -> Result<()> {
+    if area.chart().is_some() {
+        return wrong("area", "a map", "none with algorithm chords, which drives straight");
+    }
     match area.keep_outs().count() {
         0 => Ok(()),
         _ => wrong("keep_out", "some", "none with algorithm chords, which drives straight"),

@@ -1,5 +1,7 @@
 //! What a mission is, and how it is flown in the simulated world.
 
+use std::sync::Arc;
+
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
@@ -14,6 +16,8 @@ use crate::mission::allowance::{Allowance, ToleranceRecord, tidy};
 use crate::mission::asking::Asking;
 use crate::mission::bounds::Bounds;
 use crate::mission::given::{CAPACITY, Given, Lines};
+use crate::mission::lake::Lake;
+use crate::mission::terrain::Terrain;
 use crate::output::notes;
 use crate::world::World;
 use crate::world::errors::{CUT, Erring, Errors};
@@ -49,6 +53,8 @@ pub struct Mission {
     pub config: Settings<MissionArea>,
     /// The part of the tolerance that allows for a boundary that bends or moves, and for late labels.
     pub allowance: Allowance,
+    /// The map that the area is from.
+    pub lake: Option<Arc<Lake>>,
     /// What moves.
     pub vehicle: AnyVehicle,
     /// Where the agent starts.
@@ -108,6 +114,11 @@ impl Mission {
         (self.config.weight, self.vehicle) =
             (self.algorithm.weight(), self.algorithm.grid().into());
         self
+    }
+
+    /// Where motions may go.
+    pub fn terrain(&self) -> Terrain {
+        Terrain::new(self.config.area, self.lake.as_ref().map(|it| it.chart))
     }
 
     /// Whether what is known is a distribution over hypotheses.

@@ -2,7 +2,6 @@
 
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
     Belief as _, FrontState, Lines, OneLabel, Plan, Planner, Pose, Reading, Sample, Seek, Site,
@@ -13,11 +12,12 @@ use serde::{Deserialize, Serialize};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{Mission, SoughtLine};
 use crate::mission::read_out::{AnyPlanner, ReadOut};
+use crate::mission::terrain::Terrain;
 
 /// Seeks the boundary, and hands over to the planner that a mission asks for.
 pub(crate) struct FromNothing<D> {
     mission: Mission,
-    seek: Seek<D, 16, 16, MissionArea>,
+    seek: Seek<D, 16, 16, Terrain>,
     /// The planner that goes on, of a mission with the points that were found.
     on: fn(&Mission) -> AnyPlanner,
     next: Option<AnyPlanner>,
@@ -31,13 +31,13 @@ impl Mission {
 
     /// What is known of a line that is sought from nothing, before the first label.
     pub fn sought(&self) -> SoughtLine {
-        let bounds = self.config.area.bounds();
+        let bounds = self.terrain().bounds();
         Lines::new(bounds, self.noise_told()).given(self.given.samples())
     }
 
     /// What labels all over its area say, if it most likely has one label.
     pub fn one_label(&self, labels: &[Sample]) -> Option<OneLabel> {
-        let area = aimed_for(self.config.area, &self.vehicle, self.config.tolerance).ok()?;
+        let area = aimed_for(self.terrain(), &self.vehicle, self.config.tolerance).ok()?;
         let patches = !self.algorithm.seeks_line() && self.front.radius().is_some();
         let noise = self.noise_told().reliability;
         OneLabel::of(&area, (self.seeking, patches), noise, (self.given.samples(), labels))
@@ -47,10 +47,10 @@ impl Mission {
     ///
     /// # Panics
     /// When settings contradict each other.
-    pub fn seek<D: Dynamics>(&self, dynamics: D) -> Seek<D, 16, 16, MissionArea> {
-        let bounds = self.config.area.bounds();
+    pub fn seek<D: Dynamics>(&self, dynamics: D) -> Seek<D, 16, 16, Terrain> {
+        let bounds = self.terrain().bounds();
         let lines = Lines::new(bounds, self.noise_told());
-        let seek = Seek::new(self.config.area, dynamics, lines).expect("room for the vehicle");
+        let seek = Seek::new(self.terrain(), dynamics, lines).expect("room for the vehicle");
         let seek = match self.asking.price {
             Some(price) => seek.at_price(price).expect("a price that was checked"),
             None => seek,

@@ -2,13 +2,12 @@
 
 use anyhow::Result;
 use planner_core::error::GivenError;
-use planner_core::link::message::MissionArea;
 use planner_core::{Label, Sample, VersionSpace};
 use serde::Deserialize;
 
 use crate::mission::bounds::Bounds;
 use crate::mission::strict::{Table, beyond, wrong};
-use crate::mission::terrain::{self, site};
+use crate::mission::terrain::{self, Terrain, site};
 use crate::world::World;
 
 /// Samples that a simulated planner can hold, the oracle's included: 64 labels beside its four.
@@ -25,17 +24,21 @@ const MOST_BOUNDING: usize = 15;
 #[serde(deny_unknown_fields)]
 pub(crate) struct SampleTable {
     /// Metres
-    x: f64,
+    pub(crate) x: Option<f64>,
     /// Metres
-    z: f64,
+    pub(crate) z: Option<f64>,
+    /// Degrees, where the area is from a map
+    pub(crate) lat: Option<f64>,
+    /// Degrees, where the area is from a map
+    pub(crate) lon: Option<f64>,
     /// -1 or 1
     label: i64,
 }
 
 impl SampleTable {
-    /// Where it is, metres.
-    pub(crate) const fn at(&self) -> [f64; 2] {
-        [self.x, self.z]
+    /// Where it is, metres; `None` if it says no place.
+    pub(crate) fn at(&self) -> Option<[f64; 2]> {
+        Some([self.x?, self.z?])
     }
 }
 
@@ -83,7 +86,7 @@ impl From<Lines> for Given {
 pub(crate) fn given_of_front(
     oracle: &[Table<SampleTable>],
     bounds: &Bounds,
-    area: &MissionArea,
+    area: &Terrain,
     world: &World,
 ) -> Result<Given> {
     if !bounds.is_empty() {
@@ -100,7 +103,7 @@ pub(crate) fn given_of_front(
 pub(crate) fn given(
     oracle: &[Table<SampleTable>],
     bounds: &Bounds,
-    area: &MissionArea,
+    area: &Terrain,
     world: &World,
 ) -> Result<Given> {
     let oracle = points(oracle, area, world)?;
@@ -108,7 +111,7 @@ pub(crate) fn given(
     if is_of_one && bounds.is_empty() {
         return Ok(Given::open(oracle));
     }
-    let above = bounds.samples(area)?;
+    let above = bounds.samples(area.area())?;
     let below: Vec<_> =
         above.iter().map(|&Sample { site, label }| Sample { site, label: -label }).collect();
     let with = |bounds: &[Sample]| VersionSpace::new(&[&*oracle, bounds].concat());
@@ -132,7 +135,7 @@ pub(crate) fn given(
 }
 
 /// The oracle's points.
-fn points(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> Result<Vec<Sample>> {
+fn points(tables: &[Table<SampleTable>], area: &Terrain, world: &World) -> Result<Vec<Sample>> {
     let point = |(i, Table(table)): (usize, &Table<SampleTable>)| {
         let field = format!("oracle[{i}]");
         let label = match table.label {
@@ -140,7 +143,10 @@ fn points(tables: &[Table<SampleTable>], area: &MissionArea, world: &World) -> R
             -1 => Label::Negative,
             other => return beyond(&format!("{field}.label"), other),
         };
-        let site = site(&field, table.x, table.z)?;
+        let Some([x, z]) = table.at() else {
+            return wrong(&field, "no x and z", "both");
+        };
+        let site = site(&field, x, z)?;
         terrain::check_inside(&field, site, area)?;
         if !world.agrees(site, label) {
             let expected = format!("{}, as the truth has it", world.reading(site).sign());

@@ -12,7 +12,6 @@ use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Side};
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::{
     Belief, Heading, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance,
     Workspace as _,
@@ -20,11 +19,12 @@ use planner_core::{
 
 use crate::mission::baseline::{motion, take_in};
 use crate::mission::strict::wrong;
+use crate::mission::terrain::Terrain;
 
 /// Drives parallel tracks over a rectangle.
 pub struct Lawnmower<D, B> {
     dynamics: D,
-    area: MissionArea,
+    area: Terrain,
     belief: B,
     /// Where labels are read, in order.
     places: Vec<Site>,
@@ -40,10 +40,13 @@ pub struct Lawnmower<D, B> {
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.
-pub fn check_area(area: &MissionArea) -> Result<()> {
+pub fn check_area(area: &Terrain) -> Result<()> {
     let expected = "none with algorithm lawnmower, whose tracks go straight across";
     if area.sides().next().is_some() {
         return wrong("area", "a border that is not along an axis", expected);
+    }
+    if area.chart().is_some() {
+        return wrong("area", "a map", expected);
     }
     match area.keep_outs().count() {
         0 => Ok(()),
@@ -55,7 +58,7 @@ pub fn check_area(area: &MissionArea) -> Result<()> {
 impl<D: Dynamics, B: Belief> Lawnmower<D, B> {
     /// One that begins at a pose, for a mission of so many motions and labels at most.
     pub fn new(
-        (area, dynamics, belief): (MissionArea, D, B),
+        (area, dynamics, belief): (Terrain, D, B),
         start: Pose,
         motions: u32,
         labels: Option<u32>,
@@ -69,7 +72,7 @@ impl<D: Dynamics, B: Belief> Lawnmower<D, B> {
 /// The places of a survey, in order: of all that take so many motions at most, the one with the squarest cells. If none
 /// does, a single track.
 fn survey(
-    area: &MissionArea,
+    area: &Terrain,
     dynamics: &impl Dynamics,
     start: Pose,
     motions: u32,
@@ -108,7 +111,7 @@ struct Pattern {
 }
 
 impl Pattern {
-    fn new(area: &MissionArea, is_along_x: bool, (tracks, labels): (u32, u32), apart: f64) -> Self {
+    fn new(area: &Terrain, is_along_x: bool, (tracks, labels): (u32, u32), apart: f64) -> Self {
         let [min, max] = [area.bounds().min(), area.bounds().max()].map(Point2::<f64>::from);
         let [x, z] = (max - min).into();
         let (length, breadth) = if is_along_x { (x, z) } else { (z, x) };

@@ -16,7 +16,6 @@
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Side};
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::search::recovery::Recovery;
 use planner_core::{
     Certainty, Line, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance,
@@ -27,13 +26,14 @@ use crate::mission::baseline::{motion, take_in};
 use crate::mission::definition::Table;
 use crate::mission::given::Lines;
 use crate::mission::read_out::ReadOut;
+use crate::mission::terrain::Terrain;
 
 /// Takes the drive that ends nearest to the maximum-margin line, on uncertain ground.
 pub struct Margin<D, B> {
     /// The action set.
     pub dynamics: D,
     /// Where positions stay.
-    pub area: MissionArea,
+    pub area: Terrain,
     /// What has been learnt on the way.
     pub belief: B,
 }
@@ -77,7 +77,7 @@ impl<D: Dynamics, B: ReadOut> Margin<D, B> {
     /// Whether a drive from outside the area, where an error has brought it, leads nearer to its middle.
     fn comes_back(&self, from: Site, to: Site) -> bool {
         let [before, after] = [from, to].map(|site| {
-            let way = self.area.middle() - site;
+            let way = self.area.area().middle() - site;
             way.dot(way)
         });
         !self.area.contains(from) && after < before

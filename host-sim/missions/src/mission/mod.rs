@@ -17,6 +17,7 @@ pub mod from_nothing;
 pub mod front;
 pub mod given;
 pub mod join;
+pub mod lake;
 pub mod lawnmower;
 pub mod legs;
 mod line_record;

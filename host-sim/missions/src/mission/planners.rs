@@ -2,7 +2,6 @@
 
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::watch::Alarm;
 use planner_core::{
     Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState,
@@ -21,6 +20,7 @@ use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::{AnyPlanner, ReadOut};
+use crate::mission::terrain::Terrain;
 
 /// Why a constructor cannot refuse a mission's settings.
 const FITS: &str = "settings that contradict each other were refused";
@@ -93,7 +93,7 @@ impl Mission {
     pub fn belief(&self) -> Box<dyn ReadOut> {
         match () {
             () if !self.algorithm.seeks_line() => {
-                Box::new(self.track(self.config.area, self.vehicle).belief().clone())
+                Box::new(self.track(self.terrain(), self.vehicle).belief().clone())
             }
             () if self.begins_from_nothing() => Box::new(self.sought()),
             () if self.is_noisy() => Box::new(self.table()),
@@ -102,7 +102,7 @@ impl Mission {
     }
 
     fn planner_of(&self, dynamics: AnyVehicle) -> AnyPlanner {
-        let (area, rng) = (self.config.area, ChaCha8Rng::seed_from_u64(self.seed));
+        let (area, rng) = (self.terrain(), ChaCha8Rng::seed_from_u64(self.seed));
         match self.algorithm {
             Algorithm::Lawnmower if self.begins_from_nothing() => {
                 erased(self.lawnmower((area, dynamics, self.sought())))
@@ -141,7 +141,7 @@ impl Mission {
         Chords::new(of, ends, p, self.start.site, (self.steps, self.asking.labels))
     }
 
-    fn lawnmower<D: Dynamics, B: Belief>(&self, of: (MissionArea, D, B)) -> Lawnmower<D, B> {
+    fn lawnmower<D: Dynamics, B: Belief>(&self, of: (Terrain, D, B)) -> Lawnmower<D, B> {
         Lawnmower::new(of, self.start, self.steps, self.asking.labels)
     }
 
@@ -173,7 +173,7 @@ impl Mission {
 
     /// The half-width below which the front counts as found, metres; `None` if the planner seeks a line.
     pub fn found_width(&self) -> Option<f32> {
-        let (area, vehicle) = (self.config.area, self.vehicle);
+        let (area, vehicle) = (self.terrain(), self.vehicle);
         (!self.algorithm.seeks_line()).then(|| self.track(area, vehicle).width())
     }
 

@@ -2,7 +2,6 @@
 
 use planner_core::dynamics::{Action, Dynamics, Side};
 use planner_core::error::ObservationError;
-use planner_core::link::message::MissionArea;
 use planner_core::{
     Belief, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance, Workspace as _,
 };
@@ -10,6 +9,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::baseline::{motion, take_in};
+use crate::mission::terrain::Terrain;
 
 /// Actions that are drawn to find a drive.
 const DRAWN: u32 = 1_000;
@@ -21,7 +21,7 @@ pub struct RandomWalk<D, B> {
     /// The action set.
     pub dynamics: D,
     /// Where positions stay.
-    pub area: MissionArea,
+    pub area: Terrain,
     /// What has been learnt on the way.
     pub belief: B,
     /// The random number generator.
@@ -37,7 +37,7 @@ impl<D: Dynamics, B: Belief> Planner for RandomWalk<D, B> {
         }
         let is_outside = !self.area.contains(pose.site);
         let to_middle = |site| {
-            let way = self.area.middle() - site;
+            let way = self.area.area().middle() - site;
             way.dot(way)
         };
         let drive = (0..DRAWN).find_map(|_| {

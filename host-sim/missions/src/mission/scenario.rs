@@ -1,6 +1,7 @@
 //! Scenario files: what a mission is, in TOML. The contract is in docs/reference/scenario.md.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::{Context as _, Error, Result, anyhow};
 use nalgebra::Point2;
@@ -24,13 +25,14 @@ use crate::mission::doubts;
 use crate::mission::front::{self, FrontTable};
 use crate::mission::given::{CAPACITY, Lines};
 use crate::mission::given::{SampleTable, given, given_of_front};
+use crate::mission::lake::Lake;
 use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::seeking::{self, SeekTable};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Table, beyond, no_angle, wrong};
-use crate::mission::terrain::{self, AreaTable, KeepOutTable, site};
+use crate::mission::terrain::{self, AreaTable, KeepOutTable, Terrain, on_map, site};
 use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
 use crate::mission::wording::{SCENARIO, at_its_line, expected, of_toml};
@@ -188,6 +190,10 @@ struct StartTable {
     x: Option<f64>,
     /// Metres [default: that of the first oracle point]
     z: Option<f64>,
+    /// Degrees, where the area is from a map
+    lat: Option<f64>,
+    /// Degrees, where the area is from a map
+    lon: Option<f64>,
     /// Radians from the x axis to the z axis [default: 0]
     #[serde(default)]
     heading: f64,
@@ -209,7 +215,7 @@ pub struct Overrides {
 /// # Errors
 /// One message with the file, the line or field, what was found and what was expected.
 pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
-    simulated(&path.display().to_string(), &content(path)?, beside(path), overrides)
+    parse_in(&path.display().to_string(), &content(path)?, beside(path), overrides)
 }
 
 /// As [`read`], for a real vehicle: the file need not have a `truth`, and its `sensor` is not simulated.
@@ -226,10 +232,14 @@ pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
 /// # Errors
 /// As [`read`].
 pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
-    simulated(name, text, Path::new(""), overrides)
+    parse_in(name, text, Path::new(""), overrides)
 }
 
-fn simulated(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
+/// The same with its other files in a folder.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_in(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let mission = any(name, text, folder, overrides)?;
     if !mission.world.is_known() {
         let found = wrong("truth", "none", BOUNDARY);
@@ -254,8 +264,8 @@ fn content(path: &Path) -> Result<String> {
 
 /// The mission, whether it says what is true or not.
 fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
-    let file: File = toml::from_str(text).map_err(|error| of_toml(name, text, &error))?;
-    mission(&file, folder, overrides).map_err(|error| {
+    let mut file: File = toml::from_str(text).map_err(|error| of_toml(name, text, &error))?;
+    mission(&mut file, folder, overrides).map_err(|error| {
         // A wrong number of steps in a flag is reported as the flag's.
         let is_flag = error.to_string().starts_with("--");
         if is_flag { error } else { at_its_line(name, text, format_args!("{error:#}")) }
@@ -297,6 +307,25 @@ impl Room {
 }
 
 impl File {
+    /// Brings positions of a map to the lattice: the ground of the area, if it is from a map.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    fn on_map(&mut self, folder: &Path) -> Result<Option<Lake>> {
+        let lake = self.area.0.lake(folder)?;
+        let map = lake.as_ref();
+        let StartTable { x, z, lat, lon, .. } = &mut self.start.0;
+        on_map("start", map, [x, z], [*lat, *lon])?;
+        for (k, Table(SampleTable { x, z, lat, lon, .. })) in self.oracle.iter_mut().enumerate() {
+            on_map(&format!("oracle[{k}]"), map, [x, z], [*lat, *lon])?;
+        }
+        for (k, Table(KeepOutTable { x, z, lat, lon, .. })) in self.keep_out.iter_mut().enumerate()
+        {
+            on_map(&format!("keep_out[{k}]"), map, [x, z], [*lat, *lon])?;
+        }
+        Ok(lake)
+    }
+
     /// What may be meant otherwise.
     ///
     /// # Errors
@@ -314,7 +343,7 @@ impl File {
             ("errors.heading", errors.heading, 0.2),
             ("vehicle.turn_step", turn_step.unwrap_or_default(), 0.5),
         ]);
-        let points = self.oracle.iter().map(|it| it.0.at()).collect::<Vec<_>>();
+        let points = self.oracle.iter().filter_map(|it| it.0.at()).collect::<Vec<_>>();
         all.extend(doubts::of_points(&points, vehicle));
         all.extend(self.doubted_slope(area));
         all.extend(doubts::of_area(area, vehicle)?);
@@ -401,7 +430,7 @@ pub fn check_readings(field: &str, readings: u32) -> Result<()> {
     Ok(())
 }
 
-fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> {
+fn mission(file: &mut File, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
@@ -416,13 +445,15 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         || Ok(grid.into()),
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
-    let area = terrain::area(&file.area.0, &file.keep_out)?;
+    let lake = file.on_map(folder)?;
+    let area = terrain::area(&file.area.0, lake.as_ref(), &file.keep_out)?;
+    let terrain = Terrain::new(area, lake.as_ref().map(|it| it.chart));
     let doubts = file.doubts(&area, (algorithm, &vehicle))?;
     if algorithm == Algorithm::Lawnmower {
-        lawnmower::check_area(&area)?;
+        lawnmower::check_area(&terrain)?;
     }
     if algorithm == Algorithm::Chords {
-        chords::check_area(&area)?;
+        chords::check_area(&terrain)?;
     }
     let asked = file.ask.0.with(file.price, file.labels);
     let names = ["price", "labels", "ask.worth"];
@@ -441,7 +472,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     check_steps(steps_name, steps, given_count, room)?;
     let world = file.truth.as_ref().map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, folder))?;
     let reads = if algorithm.seeks_line() { given } else { given_of_front };
-    let given = file.doubting(&area, reads(&file.oracle, &bounds, &area, &world))?;
+    let given = file.doubting(&area, reads(&file.oracle, &bounds, &terrain, &world))?;
     if algorithm == Algorithm::Chords {
         chords::ends(&given.samples()[..file.oracle.len()])?;
     }
@@ -453,7 +484,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
     let (front, watch) = front::front(file.front.as_ref(), algorithm, (&vehicle, area.bounds()))?;
     let seeking = seeking::seeking(file.seek.as_ref())?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
-    let start = start(&file.start.0, first, &area)?;
+    let start = start(&file.start.0, first, &terrain)?;
     let errors = errors(&file.errors.0)?;
     let allowance = file.allow.0;
     allowance.check("allow.")?;
@@ -475,6 +506,7 @@ fn mission(file: &File, folder: &Path, overrides: Overrides) -> Result<Mission> 
         (None, stop.map_or(Ok(true), StopTable::until_closed)?)
     };
     let mission = Mission {
+        lake: lake.map(Arc::new),
         algorithm,
         steps,
         readings: file.readings,
@@ -682,7 +714,7 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
 }
 
 /// Where it starts: at the oracle's first point, unless the file says otherwise.
-fn start(table: &StartTable, first: Option<Site>, area: &MissionArea) -> Result<Pose> {
+fn start(table: &StartTable, first: Option<Site>, area: &Terrain) -> Result<Pose> {
     let Ok(heading) = Heading::from_radians(table.heading) else {
         return beyond("start.heading", table.heading);
     };

@@ -75,7 +75,7 @@ impl Mission {
     /// # Errors
     /// Names the field, what was found and what was expected.
     pub(crate) fn check_patch(&self) -> Result<()> {
-        let (area, noise) = (self.config.area, self.noise_told());
+        let (area, noise) = (self.terrain(), self.noise_told());
         let track = Track::new(area, self.vehicle, self.front, noise);
         match track.and_then(|track| track.seeking(self.seeking)) {
             Err(why @ SetupError::Patch { .. }) if !self.algorithm.seeks_line() => {

@@ -1,17 +1,24 @@
 //! The area of a mission and its keep-outs, as scenario files describe them.
 
-use anyhow::Result;
+use std::path::Path;
+
+use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
-use planner_core::{Area, Hull, KeepOut, Line, Site, Workspace as _};
+use planner_core::{Area, Charted, Hull, KeepOut, Line, Site, Workspace as _};
 use serde::Deserialize;
 
 use crate::mission::allowance::tidy;
+use crate::mission::lake::{self, Lake};
 use crate::mission::strict::{Numbers, Table, beyond, wrong};
 use crate::world::polygon::Polygon;
 
-/// `area` of a scenario file, metres: a rectangle, or a convex polygon by its corners in order.
+/// Where motions may go: an area, and the cells of a map if it is from one.
+pub type Terrain = Charted<'static, MissionArea>;
+
+/// `area` of a scenario file: a rectangle or a convex polygon by its corners in order, metres, or polygons of any shape from
+/// a map.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct AreaTable {
@@ -21,12 +28,18 @@ pub(crate) struct AreaTable {
     z: Option<Numbers<2>>,
     /// Instead of both: three to eight corners in order around a convex polygon
     polygon: Option<Vec<Numbers<2>>>,
+    /// Instead of all: a file beside the scenario with polygons of any shape, in latitude and longitude, or in metres of `crs`
+    geojson: Option<String>,
+    /// The system of the file's metres, as `"EPSG:32633"`
+    crs: Option<String>,
+    /// Cells along the longer side of the polygons, 2 to 256: motions stay on cells that lie wholly inside [default: 256]
+    cells: Option<u16>,
 }
 
 impl Default for AreaTable {
     fn default() -> Self {
         let range = || Some(Numbers([0.0, 20.0]));
-        Self { x: range(), z: range(), polygon: None }
+        Self { x: range(), z: range(), polygon: None, geojson: None, crs: None, cells: None }
     }
 }
 
@@ -35,22 +48,94 @@ impl Default for AreaTable {
 #[serde(deny_unknown_fields)]
 pub(crate) struct KeepOutTable {
     /// The middle of a disc
-    x: Option<f64>,
+    pub(crate) x: Option<f64>,
     /// The middle of a disc
-    z: Option<f64>,
+    pub(crate) z: Option<f64>,
+    /// The middle of a disc, degrees, where the area is from a map
+    pub(crate) lat: Option<f64>,
+    /// The middle of a disc, degrees, where the area is from a map
+    pub(crate) lon: Option<f64>,
     /// Its radius, up to 4096
     radius: Option<f64>,
     /// Instead: two corners (a wall) to eight, in order around a convex polygon
     polygon: Option<Vec<Numbers<2>>>,
 }
 
+impl AreaTable {
+    /// The ground on a map, if it is one.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    pub(crate) fn lake(&self, folder: &Path) -> Result<Option<Lake>> {
+        let Some(name) = &self.geojson else {
+            let of_map = [("crs", self.crs.is_some()), ("cells", self.cells.is_some())];
+            let Some((key, _)) = of_map.into_iter().find(|(_, is_there)| *is_there) else {
+                return Ok(None);
+            };
+            return wrong(&format!("area.{key}"), "one", "none without area.geojson");
+        };
+        let crs = self.crs.as_deref().map(str::parse).transpose();
+        let crs = crs.map_err(|error| anyhow!("area.crs: {error}"))?;
+        let cells = self.cells.unwrap_or(lake::USUAL);
+        if !(2..=lake::USUAL).contains(&cells) {
+            return wrong("area.cells", cells, format!("2 to {}", lake::USUAL));
+        }
+        let lake = Lake::read(&folder.join(name), name, crs, cells);
+        lake.map(Some).map_err(|error| anyhow!("area.geojson: {error}"))
+    }
+}
+
+/// The position of a table: latitude and longitude, or metres. Of an area from a map these are the map's.
+///
+/// # Errors
+/// Names the field, what was found and what was expected.
+pub(crate) fn on_map(
+    field: &str,
+    lake: Option<&Lake>,
+    [x, z]: [&mut Option<f64>; 2],
+    [lat, lon]: [Option<f64>; 2],
+) -> Result<()> {
+    let frame = lake.map(|it| &it.frame);
+    let recorded = match (lat, lon, *x, *z) {
+        (None, None, None, None) => return Ok(()),
+        (Some(lat), Some(lon), None, None) => match frame {
+            Some(frame) if frame.is_geographic() => [lat, lon],
+            Some(_) => return wrong(field, "lat and lon", "x and z in metres of area.crs"),
+            None => return wrong(field, "lat and lon", "x and z, as the area is in metres"),
+        },
+        (None, None, Some(east), Some(north)) => match frame {
+            Some(frame) if frame.is_geographic() => {
+                return wrong(field, "x and z", "lat and lon, as the area has them");
+            }
+            Some(_) => [east, north],
+            None => return Ok(()),
+        },
+        _ => return wrong(field, "a part of a position", "lat and lon, or x and z"),
+    };
+    let Some(frame) = frame else { return Ok(()) };
+    let site = frame.site(recorded).map_err(|error| anyhow!("{field}: {error}"))?;
+    let at = Point2::<f64>::from(site);
+    (*x, *z) = (Some(at.x), Some(at.y));
+    Ok(())
+}
+
 /// The area of a mission, with its keep-outs.
 ///
 /// # Errors
 /// Names the field, what was found and what was expected.
-pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Result<MissionArea> {
-    let plain = match (&area.x, &area.z, &area.polygon) {
-        (Some(Numbers([x0, x1])), Some(Numbers([z0, z1])), None) => {
+pub(crate) fn area(
+    area: &AreaTable,
+    lake: Option<&Lake>,
+    keep_outs: &[Table<KeepOutTable>],
+) -> Result<MissionArea> {
+    let keys = [
+        ("x", area.x.is_some()),
+        ("z", area.z.is_some()),
+        ("polygon", area.polygon.is_some()),
+        ("geojson", area.geojson.is_some()),
+    ];
+    let plain = match (lake, &area.x, &area.z, &area.polygon) {
+        (None, Some(Numbers([x0, x1])), Some(Numbers([z0, z1])), None) => {
             let corners = (site("area", *x0, *z0)?, site("area", *x1, *z1)?);
             let Ok(area) = Area::new(corners.0, corners.1) else {
                 let found = format!("x = [{x0}, {x1}], z = [{z0}, {z1}]");
@@ -58,19 +143,13 @@ pub(crate) fn area(area: &AreaTable, keep_outs: &[Table<KeepOutTable>]) -> Resul
             };
             MissionArea::from(area)
         }
-        (None, None, Some(corners)) => {
+        (Some(lake), None, None, None) => MissionArea::from(lake.bounds()),
+        (None, None, None, Some(corners)) => {
             let hull = hull("area.polygon", corners, 3)?;
             let found = |why| wrong("area.polygon", why, "a polygon with an inside");
             MissionArea::new(hull, &[]).or_else(found)?
         }
-        _ => {
-            let keys = [
-                ("x", area.x.is_some()),
-                ("z", area.z.is_some()),
-                ("polygon", area.polygon.is_some()),
-            ];
-            return wrong("area", present(&keys), "either { x, z } or { polygon }");
-        }
+        _ => return wrong("area", present(&keys), "one of { x, z }, { polygon } and { geojson }"),
     };
     if keep_outs.len() > MOST_KEEP_OUTS {
         return wrong("keep_out", keep_outs.len(), format!("at most {MOST_KEEP_OUTS}"));
@@ -155,7 +234,7 @@ pub(crate) fn site(field: &str, x: f64, z: f64) -> Result<Site> {
 ///
 /// # Errors
 /// Names `field` and what is in the way.
-pub fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
+pub fn check_inside(field: &str, site: Site, area: &Terrain) -> Result<()> {
     let at = Point2::<f64>::from(site);
     let found = format!("({}, {})", tidy(at.x), tidy(at.y));
     if !area.encloses(site) {
@@ -167,6 +246,9 @@ pub fn check_inside(field: &str, site: Site, area: &MissionArea) -> Result<()> {
             x[0], x[1], z[0], z[1]
         );
         return wrong(field, found, expected);
+    }
+    if area.chart().is_some_and(|it| it.cell_of(site).is_none_or(|cell| !it.is_open(cell))) {
+        return wrong(field, found, "a point on a cell that lies wholly inside area.geojson");
     }
     let in_the_way = area.keep_outs().position(|it| !it.is_clear_of(&[site], 0));
     in_the_way.map_or(Ok(()), |k| wrong(field, found, format!("a point outside keep_out[{k}]")))

@@ -4,9 +4,11 @@
 pub mod boundary;
 pub mod circle;
 pub mod coast;
+pub mod crs;
 pub mod errors;
 pub mod extent;
 pub mod faults;
+pub mod frame;
 pub mod geotiff;
 pub mod grid;
 pub(crate) mod in_order;

@@ -61,6 +61,8 @@ function drawMap(svg, flight, step, width, from) {
   if (isPart) svg = field(svg, view);
   drawAxes(sheet, view, width);
   drawFront(svg, past, at);
+  const shores = flight.shores ?? [];
+  if (shores.length > 0) add(svg, 'path', { class: 'keep-out', 'fill-rule': 'evenodd', d: [flight.area, ...shores].map(ring).join('') });
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
   add(svg, 'path', { class: 'border', d: ring(flight.area) });
   if (!flight.follows) drawTruth(svg, flight, at);

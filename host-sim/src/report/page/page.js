@@ -146,6 +146,7 @@ function legend(figure, flight) {
   if (motions.some((it) => it.target)) item('where the motion should have ended', (svg) => cross(svg, [13, 9], 'target'));
   if ((flight.shown ??= shown(flight)).isPart) item('inset: all of the area, and the part shown', box('inset'));
   if (flight.keep_outs.length > 0) item('kept out of', box('keep-out'));
+  if ((flight.shores ?? []).length > 0) item('land', box('keep-out'));
 }
 
 /** The table of several missions after the same step; returns what fills it in. */

@@ -39,6 +39,9 @@ pub(crate) struct Flight {
     pub(crate) area: Polygon,
     /// What is kept out of.
     pub(crate) keep_outs: Vec<Polygon>,
+    /// The shores of a lake: land lies beyond them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) shores: Vec<Polygon>,
     /// The samples that were given.
     pub(crate) given: Vec<(Point2<f64>, i8)>,
     /// The true line, where there is one.
@@ -222,6 +225,7 @@ impl Flight {
             labels_err: mission.is_noisy(),
             follows: !mission.algorithm.seeks_line(),
             keep_outs: area.hulls().map(|hull| polygon(hull.into())).collect(),
+            shores: picture.shores.iter().cloned().map(|it| polygon(Polygon(it))).collect(),
             given: mission.oracle().iter().map(given).collect(),
             truth: results.start.truth,
             boundary: picture.truth.iter().cloned().map(|it| rounding.drawn(it)).collect(),

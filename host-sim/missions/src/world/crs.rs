@@ -84,7 +84,7 @@ impl Crs {
     ///
     /// # Errors
     /// The system does not reach there.
-    pub(crate) fn degrees(&self, [x, z]: [f64; 2]) -> Result<[f64; 2]> {
+    pub fn degrees(&self, [x, z]: [f64; 2]) -> Result<[f64; 2]> {
         let mut at = (x, z);
         let found = transform(&self.systems.own, &self.systems.degrees, &mut at);
         let place = [at.1, at.0].map(f64::to_degrees);
@@ -98,7 +98,7 @@ impl Crs {
     ///
     /// # Errors
     /// How long it is there.
-    pub(crate) fn check(&self, [x, z]: [f64; 2]) -> Result<()> {
+    pub fn check(&self, [x, z]: [f64; 2]) -> Result<()> {
         let half = APART / 2.0;
         for [dx, dz] in [[half, 0.0], [0.0, half]] {
             let [from, to] = [self.degrees([x - dx, z - dz])?, self.degrees([x + dx, z + dz])?];

@@ -13,8 +13,7 @@ use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
 use planner_core::{Line, Site};
 use serde::Serialize;
 
-use crate::replay::crs::Crs;
-use crate::replay::rows::Layout;
+use crate::world::crs::Crs;
 use crate::world::extent::span;
 
 /// How far the lattice reaches, metres.
@@ -29,23 +28,28 @@ const FEWEST: usize = 3;
 /// How recorded positions become positions on the lattice: metres, or latitude and longitude, about an origin if they
 /// have one.
 #[derive(Clone, Debug, Serialize)]
-pub(crate) struct Frame {
+pub struct Frame {
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) origin: Option<[f64; 2]>,
+    /// Latitude and longitude, or metres.
+    pub origin: Option<[f64; 2]>,
     /// The coordinate system of the metres, if it is known.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) crs: Option<Crs>,
+    pub crs: Option<Crs>,
     /// Of latitude and longitude, degrees.
     #[serde(skip)]
     ellipsoid: Option<Geodesic>,
 }
 
 impl Frame {
-    /// The frame of some positions, about the layout's origin if it has one.
-    pub(crate) fn of(
+    /// The frame of some positions, about an origin if there is one.
+    ///
+    /// # Errors
+    /// Names the origin if it is no place.
+    pub fn of(
         positions: &[[f64; 2]],
         is_geographic: bool,
-        &Layout { origin, ref crs, .. }: &Layout,
+        origin: Option<[f64; 2]>,
+        crs: Option<&Crs>,
     ) -> Result<Self> {
         let is_near = |at: &[f64; 2]| Site::try_from(Point2::from(*at)).is_ok();
         let is_plain = || positions.len() < FEWEST || positions.iter().all(is_near);
@@ -64,11 +68,11 @@ impl Frame {
             }
             _ => {}
         }
-        Ok(Self { origin, crs: crs.clone(), ellipsoid })
+        Ok(Self { origin, crs: crs.cloned(), ellipsoid })
     }
 
     /// The site of a recorded position.
-    pub(crate) fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
+    pub fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
         let [x0, z0] = self.origin.unwrap_or_default();
         let at = if let Some(ellipsoid) = &self.ellipsoid {
             let (metres, azimuth, ..): (f64, f64, f64, f64) = ellipsoid.inverse(x0, z0, x, z);
@@ -86,12 +90,13 @@ impl Frame {
         })
     }
 
-    pub(crate) const fn is_geographic(&self) -> bool {
+    /// Whether positions are latitude and longitude.
+    pub const fn is_geographic(&self) -> bool {
         self.ellipsoid.is_some()
     }
 
     /// A position as it would have been recorded: `x` and `z`, or latitude and longitude.
-    pub(crate) fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
+    pub fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
         let [x0, z0] = self.origin.unwrap_or_default();
         let Some(ellipsoid) = &self.ellipsoid else { return [at.x + x0, at.y + z0] };
         let azimuth = libm::atan2(at.x, at.y).to_degrees();
@@ -100,12 +105,12 @@ impl Frame {
     }
 
     /// A position in the file's coordinates, if these are not the planner's.
-    pub(crate) fn in_file(&self, at: Point2<f64>) -> Option<[f64; 2]> {
+    pub fn in_file(&self, at: Point2<f64>) -> Option<[f64; 2]> {
         self.origin.map(|_| self.recorded(at))
     }
 
     /// Whether positions have a latitude and a longitude.
-    pub(crate) fn is_on_globe(&self) -> bool {
+    pub fn is_on_globe(&self) -> bool {
         self.is_geographic() || self.crs.is_some()
     }
 
@@ -113,7 +118,7 @@ impl Frame {
     ///
     /// # Errors
     /// Metres have none by themselves.
-    pub(crate) fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
+    pub fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
         let [lat, lon] = match &self.crs {
             _ if self.is_geographic() => self.recorded(at),
             Some(crs) => crs.degrees(self.recorded(at))?.map(to_grain),
@@ -123,18 +128,44 @@ impl Frame {
     }
 
     /// A ring of positions, closed, as longitudes and latitudes.
-    pub(crate) fn ring<P: Copy + Into<Point2<f64>>>(&self, ring: &[P]) -> Result<Vec<[f64; 2]>> {
+    pub fn ring<P: Copy + Into<Point2<f64>>>(&self, ring: &[P]) -> Result<Vec<[f64; 2]>> {
         ring.iter().chain(ring.first()).map(|at| self.degrees((*at).into())).collect()
     }
 
+    /// Checks that positions have a place on the globe, all on one side of the 180th meridian. `name` is what they are
+    /// of, and `or` another way to have one.
+    ///
+    /// # Errors
+    /// Names what was found and what was expected.
+    pub fn check_globe(
+        &self,
+        (name, or): (&str, &str),
+        places: impl Iterator<Item = Point2<f64>>,
+    ) -> Result<()> {
+        if !self.is_on_globe() {
+            bail!(
+                "--geojson: found positions in metres in {name}, expected latitude and longitude{or}, or the system of the \
+                 metres (--crs EPSG:...)"
+            );
+        }
+        let lons = places.map(|at| Ok(self.degrees(at)?[0])).collect::<Result<Vec<_>>>()?;
+        let [least, most] = span(lons);
+        if most - least > 180.0 {
+            bail!(
+                "--geojson: {name} lies on both sides of the 180th meridian, expected positions on one"
+            );
+        }
+        Ok(())
+    }
+
     /// A line in the file's metres; `None` where the file has none.
-    pub(crate) fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
+    pub fn line(&self, [a, b, c]: [f64; 3]) -> Option<Line> {
         let [x, z] = self.origin.unwrap_or_default();
         (!self.is_geographic()).then(|| Line::from_coefficients(a, b, c - a * x - b * z))?
     }
 
     /// The origin of positions, in words: a line, if there is one.
-    pub(crate) fn about(&self) -> String {
+    pub fn about(&self) -> String {
         let of = self.crs.as_ref().map_or(String::new(), |crs| format!(" of {crs}"));
         match self.origin {
             None => String::new(),
@@ -180,7 +211,7 @@ fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
 ///
 /// # Errors
 /// Which of the two is wrong, and what was expected.
-pub(crate) fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
+pub fn check_degrees([lat, lon]: [f64; 2]) -> Result<()> {
     if !(-90.0..=90.0).contains(&lat) {
         bail!("lat: found {lat}, expected a latitude from -90 to 90 degrees");
     }
