@@ -8,6 +8,7 @@ use crate::campaign::calibration;
 use crate::campaign::ensemble::readings_told;
 use crate::campaign::spread::Spread;
 use crate::mission::algorithm::Algorithm;
+use crate::report::comparison::{HOLDS, holds};
 use crate::report::table::{Column, Table};
 
 fn spread(Spread { median, p90, worst }: Spread, decimals: usize) -> String {
@@ -79,7 +80,7 @@ fn counts<K: Display>(counts: &BTreeMap<K, u64>) -> String {
     if each.is_empty() { "none".into() } else { each.join(", ") }
 }
 
-/// The information of labels that may be wrong, and whether statements hold.
+/// The information of labels that may be wrong, and how often credible sets hold.
 pub fn calibration(summary: &calibration::Summary) -> String {
     let calibration::Summary { title, limit, rows, .. } = summary;
     let percent = |share: Option<f64>| share.map_or("-".into(), |it| format!("{:.1}%", 100.0 * it));
@@ -101,31 +102,8 @@ pub fn calibration(summary: &calibration::Summary) -> String {
             }),
             (Column::right("cost", 7), &|row| format!("{:.1}", row.control_cost)),
             (Column::right("metres", 7), &|row| format!("{:.1}", row.metres)),
+            (Column::right(HOLDS, 25).apart(), &holds),
         ],
     );
-    let [by_area, by_sequences] = [0, 1].map(|prior| coverage(rows, prior));
-    format!(
-        "{title}; a label tells {limit:.4} bits at most\n\n{table}\n\
-         By the area prior:\n{by_area}\nBy the paper's prior:\n{by_sequences}"
-    )
-}
-
-/// How often statements hold, by one of the two priors.
-fn coverage(rows: &[calibration::Row], prior: usize) -> Table {
-    const BEST: &str = "best hypothesis in five bins: mean stated > share that hold the truth";
-    let of = |row: &calibration::Row| row.calibration[prior].clone();
-    let bins = |row: &calibration::Row| {
-        let bins = of(row).best.into_iter();
-        let bins = bins.map(|(_, stated, hit)| format!("{stated:.3} > {hit:.3}"));
-        bins.collect::<Vec<_>>().join(" | ")
-    };
-    Table::of(
-        rows,
-        &[
-            (Column::right("labels", 6), &|row| row.labels.to_string()),
-            (Column::right("coverage", 8).apart(), &|row| format!("{:.3}", of(row).coverage)),
-            (Column::right("stated", 7), &|row| format!("{:.3}", of(row).stated)),
-            (Column::left(BEST, 0).apart(), &bins),
-        ],
-    )
+    format!("{title}; a label tells {limit:.4} bits at most\n\n{table}")
 }

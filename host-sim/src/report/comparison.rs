@@ -1,6 +1,6 @@
 //! Campaigns of several planners on the same fields, side by side: a column each.
 
-use crate::campaign::calibration::{Calibration, how_often};
+use crate::campaign::calibration::how_often;
 use crate::campaign::ensemble::readings_told;
 use crate::campaign::{accuracy, calibration};
 use crate::mission::algorithm::Algorithm;
@@ -19,13 +19,9 @@ pub fn accuracy(summaries: &[accuracy::Summary]) -> String {
     let stages = stages(flown.clone());
     let motion = flown.filter(|step| *step <= MOTION).max();
     let mut table = table("step", summaries.iter().map(|summary| summary.algorithm));
-    let mut add = |name: &'static str, stages: &[u32], of: fn(&accuracy::Row) -> String| {
-        add(&mut table, name, stages, |stage| {
-            let at = |summary: &accuracy::Summary| {
-                summary.rows.iter().find(|row| row.step == stage).map(of)
-            };
-            summaries.iter().map(at).collect()
-        });
+    let of_each: Vec<_> = summaries.iter().map(|it| &it.rows[..]).collect();
+    let mut add = |name, stages: &[u32], of: fn(&accuracy::Row) -> String| {
+        add(&mut table, name, stages, &of_each, |row| row.step, of);
     };
     add("bits/step", &stages, |row| format!("{:.3}", row.bits_per_step));
     add("centre, slope error deg", &stages, |row| small(row.centre_deg.median));
@@ -45,13 +41,9 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
     let Some(first) = summaries.first() else { return String::new() };
     let stages = stages(first.rows.iter().map(|row| row.labels));
     let mut table = table("labels", summaries.iter().map(|summary| summary.algorithm));
-    let mut add = |name: &'static str, of: fn(&calibration::Row) -> String| {
-        add(&mut table, name, &stages, |stage| {
-            let at = |summary: &calibration::Summary| {
-                summary.rows.iter().find(|row| row.labels == stage).map(of)
-            };
-            summaries.iter().map(at).collect()
-        });
+    let of_each: Vec<_> = summaries.iter().map(|it| &it.rows[..]).collect();
+    let mut add = |name, of: fn(&calibration::Row) -> String| {
+        add(&mut table, name, &stages, &of_each, |row| row.labels, of);
     };
     add("missions", |row| row.missions.to_string());
     add("bits told", |row| format!("{:.3}", row.bits));
@@ -63,10 +55,7 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
     });
     add("mean, slope error deg", |row| format!("{:.3}", row.mean_deg.median));
     add("mean, misclassified %", |row| format!("{:.4}", 100.0 * row.mean_misclassified.median));
-    add("90 % set holds (states) %", |row| {
-        let [Calibration { coverage, stated, .. }, _] = &row.calibration;
-        format!("{:.1} ({:.1})", 100.0 * coverage, 100.0 * stated)
-    });
+    add(HOLDS, holds);
     add("control cost", |row| format!("{:.1}", row.control_cost));
     add("metres", |row| format!("{:.1}", row.metres));
     format!(
@@ -78,6 +67,13 @@ pub fn calibration(summaries: &[calibration::Summary]) -> String {
         readings_told(first.readings),
         first.limit
     )
+}
+
+/// The name of how often credible sets hold the line, and state to.
+pub(super) const HOLDS: &str = "90 % set holds (states) %";
+
+pub(super) fn holds(row: &calibration::Row) -> String {
+    format!("{:.1} ({:.1})", 100.0 * row.coverage, 100.0 * row.stated)
 }
 
 /// An error, which may be very small.
@@ -99,15 +95,18 @@ fn table(stage: &'static str, planners: impl Iterator<Item = Algorithm>) -> Tabl
 }
 
 /// A row for each stage, the first with the name of what is compared. A planner that ended earlier has a dash.
-fn add(
+fn add<R>(
     table: &mut Table,
     name: &str,
     stages: &[u32],
-    figures: impl Fn(u32) -> Vec<Option<String>>,
+    of_each: &[&[R]],
+    stage_of: fn(&R) -> u32,
+    figure: fn(&R) -> String,
 ) {
     for (k, &stage) in stages.iter().enumerate() {
         let name = if k == 0 { name } else { "" };
-        let figures = figures(stage).into_iter().map(|it| it.unwrap_or("-".into()));
+        let at = |rows: &&[R]| rows.iter().find(|row| stage_of(row) == stage).map(figure);
+        let figures = of_each.iter().map(|rows| at(rows).unwrap_or("-".into()));
         table.row([name.to_owned(), stage.to_string()].into_iter().chain(figures));
     }
 }

@@ -86,19 +86,7 @@ fn rows_in_noise_hold_what_tables_tell() {
         assert_eq!(row["bits"], mean(&of("bits")));
         assert_eq!(row["expected_bits"], mean(&of("expected_bits")));
         assert_eq!(row["mean_deg"], spread(of("mean_deg")));
-        for (prior, name) in ["area", "paper"].into_iter().enumerate() {
-            let calibration = &row["calibration"][prior];
-            let of = |what: &str| of(&format!("{name}_{what}"));
-            assert_eq!(calibration["coverage"], mean(&of("credible_holds")));
-            assert_eq!(calibration["stated"], mean(&of("credible_probability")));
-            let mut best: Vec<_> =
-                of("best_probability").into_iter().zip(of("best_holds")).collect();
-            best.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let bins = best.chunks(best.len().div_ceil(5)).map(|bin| {
-                let (stated, holds): (Vec<_>, Vec<_>) = bin.iter().copied().unzip();
-                json!([bin.len(), mean(&stated), mean(&holds)])
-            });
-            assert_eq!(calibration["best"], bins.collect::<Value>(), "{name} after {labels}");
-        }
+        assert_eq!(row["coverage"], mean(&of("credible_holds")));
+        assert_eq!(row["stated"], mean(&of("credible_probability")));
     }
 }

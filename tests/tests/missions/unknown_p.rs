@@ -35,10 +35,9 @@ fn flown(told: Option<f64>, real: Option<f64>, algorithm: Algorithm, fields: u64
 fn on_average_over_the_prior_stated_probabilities_are_right() {
     for algorithm in [Algorithm::Lookahead, Algorithm::Scc] {
         let row = flown(None, None, algorithm, cases(120, 10_000));
-        let by_area = &row.calibration[0];
         // Three standard deviations of a share, and at most a point in the long run.
         let most = 3.0 * (0.09 / row.missions as f64).sqrt();
-        expect(format!("{algorithm:?}"), by_area.coverage - by_area.stated, -most..=most);
+        expect(format!("{algorithm:?}"), row.coverage - row.stated, -most..=most);
     }
 }
 
@@ -48,7 +47,7 @@ fn a_prior_bears_a_sensor_that_is_worse_than_stated() {
     for real in [0.55, 0.6, 0.8, 0.9, 0.99] {
         let coverage = |told| {
             let row = flown(told, Some(real), Algorithm::Lookahead, cases(40, 4_000));
-            100.0 * row.calibration[0].coverage
+            100.0 * row.coverage
         };
         let prior = coverage(None);
         if real < 0.7 {

@@ -8,8 +8,7 @@ use serde::Serialize;
 
 use crate::campaign::course::Tally;
 use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress};
-use crate::campaign::sorting::{Value, sorted};
-use crate::campaign::spread::Spread;
+use crate::campaign::spread::{Spread, Stages, mean};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::ReadOut;
@@ -150,25 +149,6 @@ impl Measure for Accuracy {
     }
 }
 
-/// The values of a checkpoint whose spread is reported, in the order of the row's columns.
-const SPREAD: [fn(&Checkpoint) -> f64; 6] = [
-    |it| it.centre_deg,
-    |it| it.maximum_margin_deg,
-    |it| it.bisector_deg,
-    |it| it.centre_misclassified,
-    |it| it.maximum_margin_misclassified,
-    |it| it.bisector_misclassified,
-];
-
-/// Sums over the missions at one stage.
-#[derive(Debug, Default)]
-struct Sums {
-    missions: u64,
-    bits: f64,
-    control_cost: f64,
-    metres: f64,
-}
-
 impl Summary {
     /// The results of a campaign, from its rows in the order of the fields.
     ///
@@ -178,27 +158,14 @@ impl Summary {
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
     ) -> Result<Self> {
-        let (mut stages, mut tally) = (BTreeMap::<u32, Sums>::new(), Tally::default());
-        let mut values = Vec::new();
+        let (mut stages, mut tally) = (Stages::<Checkpoint>::new(), Tally::default());
         for row in rows {
             let Measured { checkpoint, course } = row?;
-            stages.entry(checkpoint.step).or_default().add(&checkpoint);
-            for (slot, pick) in (SPREAD.len() as u32 * checkpoint.step..).zip(SPREAD) {
-                values.push(Value { slot, number: pick(&checkpoint), is_marked: false });
-            }
             if checkpoint.step == campaign.length() {
                 tally.add(&course);
             }
+            stages.entry(checkpoint.step).or_default().push(checkpoint);
         }
-        let mut sorted = sorted(values);
-        let rows = stages.iter().map(|(&step, sums)| {
-            let mut spreads = [Spread::default(); SPREAD.len()];
-            for spread in &mut spreads {
-                *spread = Spread::of(&mut sorted, sums.missions)?;
-            }
-            Ok(sums.row(step, spreads))
-        });
-        let rows = rows.collect::<Result<_>>()?;
         let Tally { ends, recoveries, plans, examined, most_examined } = tally;
         Ok(Self {
             algorithm: campaign.algorithm,
@@ -206,7 +173,7 @@ impl Summary {
             seed: campaign.seed,
             vehicle: VehicleTable::of(campaign.vehicle),
             readings: campaign.several_readings(),
-            rows,
+            rows: stages.iter().map(|(&step, missions)| Row::of(step, missions)).collect(),
             ends,
             recoveries,
             plans,
@@ -217,35 +184,20 @@ impl Summary {
     }
 }
 
-impl Sums {
-    fn add(&mut self, checkpoint: &Checkpoint) {
-        self.missions += 1;
-        self.bits += checkpoint.bits;
-        self.control_cost += checkpoint.control_cost;
-        self.metres += checkpoint.metres;
-    }
-
-    fn row(&self, step: u32, spreads: [Spread; SPREAD.len()]) -> Row {
-        let mean = |sum: f64| sum / self.missions as f64;
-        let [
-            centre_deg,
-            maximum_margin_deg,
-            bisector_deg,
-            centre_misclassified,
-            maximum_margin_misclassified,
-            bisector_misclassified,
-        ] = spreads;
-        Row {
+impl Row {
+    fn of(step: u32, missions: &[Checkpoint]) -> Self {
+        let spread = |figure: fn(&Checkpoint) -> f64| Spread::of(missions, figure);
+        Self {
             step,
-            bits_per_step: mean(self.bits) / f64::from(step),
-            centre_deg,
-            maximum_margin_deg,
-            bisector_deg,
-            centre_misclassified,
-            maximum_margin_misclassified,
-            bisector_misclassified,
-            control_cost: mean(self.control_cost),
-            metres: mean(self.metres),
+            bits_per_step: mean(missions, |it| it.bits) / f64::from(step),
+            centre_deg: spread(|it| it.centre_deg),
+            maximum_margin_deg: spread(|it| it.maximum_margin_deg),
+            bisector_deg: spread(|it| it.bisector_deg),
+            centre_misclassified: spread(|it| it.centre_misclassified),
+            maximum_margin_misclassified: spread(|it| it.maximum_margin_misclassified),
+            bisector_misclassified: spread(|it| it.bisector_misclassified),
+            control_cost: mean(missions, |it| it.control_cost),
+            metres: mean(missions, |it| it.metres),
         }
     }
 }

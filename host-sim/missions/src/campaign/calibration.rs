@@ -1,17 +1,13 @@
-//! The information gained from labels that may be wrong, as a share of what is possible, and whether the stated
-//! probabilities hold.
-
-use std::collections::BTreeMap;
+//! The information gained from labels that may be wrong, as a share of what is possible, and whether credible sets hold
+//! the line as often as they state.
 
 use anyhow::Result;
-use planner_core::belief::doubtful_labels::Hypothesis;
 use planner_core::{AnyReliability, Line, PosteriorView, Prior, UnknownReliability};
 use serde::Serialize;
 
 use crate::campaign::drawn;
 use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress, readings_told};
-use crate::campaign::sorting::{Sorted, Value, sorted};
-use crate::campaign::spread::Spread;
+use crate::campaign::spread::{Spread, Stages, mean};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::read_out::{LEVEL, ReadOut};
@@ -25,20 +21,7 @@ pub struct Calibrated;
 /// Labels after which missions are compared.
 const LABELS: [u32; 6] = [1, 5, 10, 20, 30, 60];
 
-/// Bins of stated probabilities, each with as many missions.
-const BINS: u64 = 5;
-
-/// The statements of a posterior about one mission, and whether they hold.
-#[derive(Clone, Copy, Debug)]
-struct Statement {
-    credible_probability: f64,
-    credible_holds: bool,
-    best_probability: f64,
-    best_holds: bool,
-}
-
-/// The state of knowledge after some labels of one mission. Statements are by the area prior and by the paper's.
-#[allow(clippy::struct_excessive_bools)] // columns of a row, which has no nesting
+/// The state of knowledge after some labels of one mission, by the area prior.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Checkpoint {
     field: u64,
@@ -51,26 +34,8 @@ pub struct Checkpoint {
     mean_misclassified: f64,
     control_cost: f64,
     metres: f64,
-    area_credible_probability: f64,
-    area_credible_holds: bool,
-    area_best_probability: f64,
-    area_best_holds: bool,
-    paper_credible_probability: f64,
-    paper_credible_holds: bool,
-    paper_best_probability: f64,
-    paper_best_holds: bool,
-}
-
-/// How often statements hold, by one prior.
-#[derive(Clone, Debug, Serialize)]
-pub struct Calibration {
-    /// The share of credible sets that hold the truth.
-    pub coverage: f64,
-    /// The mean probability that they state.
-    pub stated: f64,
-    /// The missions in bins of equal size by the best hypothesis's stated probability: how many, the
-    /// mean stated, and the share whose best hypothesis holds the truth.
-    pub best: Vec<(u64, f64, f64)>,
+    credible_probability: f64,
+    credible_holds: bool,
 }
 
 /// The ensemble after some labels.
@@ -101,8 +66,10 @@ pub struct Row {
     pub control_cost: f64,
     /// Mean metres travelled so far.
     pub metres: f64,
-    /// By the area prior and by the paper's.
-    pub calibration: [Calibration; 2],
+    /// The share of credible sets that hold the truth.
+    pub coverage: f64,
+    /// The mean probability that they state.
+    pub stated: f64,
 }
 
 /// The results of a campaign.
@@ -136,26 +103,6 @@ pub struct Summary {
     pub rows: Vec<Row>,
 }
 
-impl Checkpoint {
-    /// By the area prior and by the paper's.
-    fn statements(&self) -> [Statement; 2] {
-        [
-            Statement {
-                credible_probability: self.area_credible_probability,
-                credible_holds: self.area_credible_holds,
-                best_probability: self.area_best_probability,
-                best_holds: self.area_best_holds,
-            },
-            Statement {
-                credible_probability: self.paper_credible_probability,
-                credible_holds: self.paper_credible_holds,
-                best_probability: self.paper_best_probability,
-                best_holds: self.paper_best_holds,
-            },
-        ]
-    }
-}
-
 impl Measure for Calibrated {
     type Checkpoint = Checkpoint;
 
@@ -178,46 +125,27 @@ impl Measure for Calibrated {
     ) -> Option<Checkpoint> {
         let table = belief.hypotheses()?;
         let by_area = table.weighed_by(Prior::Area);
-        let by_area = PosteriorView::new(&by_area);
-        let statement = |prior| {
-            let table = &table.weighed_by(prior);
-            let posterior = PosteriorView::new(table);
-            let set = posterior.credible(LEVEL);
-            let holds = |h: &Hypothesis<15, AnyReliability>| {
-                mission.world.is_among(table.lines(h)) == Some(true)
-            };
-            let best = posterior.best().expect("a hypothesis");
-            Statement {
-                credible_probability: set.probability,
-                credible_holds: posterior.members(&set).any(holds),
-                best_probability: best.probability,
-                best_holds: holds(best.hypothesis),
-            }
-        };
-        let [area, paper] = [Prior::Area, Prior::Sequences].map(statement);
-        let mean = by_area.mean().map(Line::from);
+        let posterior = PosteriorView::new(&by_area);
+        let set = posterior.credible(LEVEL);
+        let mean = posterior.mean().map(Line::from);
         let degrees = mean.and_then(|it| Some(it.angle_to_deg(mission.world.line()?)));
         let misclassified =
             mean.and_then(|it| mission.world.misclassified(mission.config.area, &it));
         Some(Checkpoint {
             field: progress.field,
             labels: progress.labels,
-            bits: by_area.information(),
+            bits: posterior.information(),
             expected_bits: progress.expected_bits,
             hypotheses: table.iter().len(),
-            pruned_mass: by_area.pruned_mass(),
+            pruned_mass: posterior.pruned_mass(),
             mean_deg: degrees.unwrap_or(90.0),
             mean_misclassified: misclassified.unwrap_or(0.5),
             control_cost: progress.control_cost,
             metres: progress.metres,
-            area_credible_probability: area.credible_probability,
-            area_credible_holds: area.credible_holds,
-            area_best_probability: area.best_probability,
-            area_best_holds: area.best_holds,
-            paper_credible_probability: paper.credible_probability,
-            paper_credible_holds: paper.credible_holds,
-            paper_best_probability: paper.best_probability,
-            paper_best_holds: paper.best_holds,
+            credible_probability: set.probability,
+            credible_holds: posterior
+                .members(&set)
+                .any(|it| mission.world.is_among(by_area.lines(it)) == Some(true)),
         })
     }
 
@@ -225,30 +153,6 @@ impl Measure for Calibrated {
         None
     }
 }
-
-/// Sums over the missions at one stage.
-#[derive(Debug, Default)]
-struct Sums {
-    missions: u64,
-    bits: f64,
-    expected_bits: f64,
-    hypotheses: f64,
-    pruned_mass: f64,
-    control_cost: f64,
-    metres: f64,
-    by_prior: [StatementSums; 2],
-}
-
-/// Sums over what one prior states.
-#[derive(Clone, Copy, Debug, Default)]
-struct StatementSums {
-    credible_probability: f64,
-    credible_holds: f64,
-}
-
-/// What is sorted at a stage: the errors of the mean, and the best hypothesis's probability by either prior, each marked with
-/// whether it holds the truth.
-const SORTED: u32 = 4;
 
 impl Summary {
     /// The results of a campaign, from its rows in the order of the fields.
@@ -267,29 +171,18 @@ impl Summary {
         let p = drawn_from.map_or(noise.map_or(1.0, |noise| noise.p), UnknownReliability::mean);
         let limit = drawn_from.map_or(limit(p), |prior| drawn::mean(prior, limit));
         let p_told = campaign.p_told.map(PTold::from);
-        let (mut stages, mut values) = (BTreeMap::<u32, Sums>::new(), Vec::new());
+        let mut stages = Stages::<Checkpoint>::new();
         for row in rows {
             let Measured { checkpoint, .. } = row?;
-            stages.entry(checkpoint.labels).or_default().add(&checkpoint);
-            let [area, paper] = checkpoint.statements();
-            let slots = SORTED * checkpoint.labels..;
-            for (slot, (value, mark)) in slots.zip([
-                (checkpoint.mean_deg, false),
-                (checkpoint.mean_misclassified, false),
-                (area.best_probability, area.best_holds),
-                (paper.best_probability, paper.best_holds),
-            ]) {
-                values.push(Value { slot, number: value, is_marked: mark });
-            }
+            stages.entry(checkpoint.labels).or_default().push(checkpoint);
         }
-        let mut sorted = sorted(values);
         // Labels on the way carry bits as well, and are not counted. And planners that are told another reliability count
         // bits that labels do not carry. Then there are no shares.
         let readings = campaign.several_readings();
         let is_told_otherwise = campaign.p_told.is_some() && !campaign.draws_p;
         let most = if readings.is_some() || is_told_otherwise { 0.0 } else { limit };
-        let rows = stages.iter().map(|(&labels, sums)| sums.row(labels, most, &mut sorted));
-        let rows = rows.collect::<Result<_>>()?;
+        let rows = stages.iter().map(|(&labels, missions)| Row::of(labels, most, missions));
+        let rows = rows.collect();
         let title = format!(
             "{}, {fields} standard fields, seed {seed}, {}{}",
             algorithm.title(),
@@ -323,66 +216,29 @@ pub fn how_often(p: f64, told: Option<PTold>, is_drawn: bool) -> String {
     }
 }
 
-/// 1 for what holds, so that sums count.
-fn share(holds: bool) -> f64 {
-    f64::from(u8::from(holds))
-}
-
-impl Sums {
-    fn add(&mut self, checkpoint: &Checkpoint) {
-        self.missions += 1;
-        self.bits += checkpoint.bits;
-        self.expected_bits += checkpoint.expected_bits;
-        self.hypotheses += checkpoint.hypotheses as f64;
-        self.pruned_mass = self.pruned_mass.max(checkpoint.pruned_mass);
-        self.control_cost += checkpoint.control_cost;
-        self.metres += checkpoint.metres;
-        for (sums, statement) in self.by_prior.iter_mut().zip(checkpoint.statements()) {
-            sums.credible_probability += statement.credible_probability;
-            sums.credible_holds += share(statement.credible_holds);
-        }
-    }
-
-    fn row(&self, labels: u32, limit: f64, sorted: &mut Sorted) -> Result<Row> {
-        let mean = |sum: f64| sum / self.missions as f64;
-        let (bits, expected_bits) = (mean(self.bits), mean(self.expected_bits));
+impl Row {
+    /// Of missions after so many labels, each of which carries at most `limit` bits on average.
+    fn of(labels: u32, limit: f64, missions: &[Checkpoint]) -> Self {
+        let mean = |figure: fn(&Checkpoint) -> f64| mean(missions, figure);
         // A share of zero is undefined. By chance few labels can tell more than labels carry on average.
         let share =
             |bits: f64| (limit > 0.0).then(|| (bits / f64::from(labels) / limit).clamp(0.0, 1.0));
-        Ok(Row {
+        let (bits, expected_bits) = (mean(|it| it.bits), mean(|it| it.expected_bits));
+        Self {
             labels,
-            missions: self.missions,
+            missions: missions.len() as u64,
             bits,
             share: share(bits),
             expected_bits,
             expected_share: share(expected_bits),
-            hypotheses: mean(self.hypotheses),
-            pruned_mass: self.pruned_mass,
-            mean_deg: Spread::of(sorted, self.missions)?,
-            mean_misclassified: Spread::of(sorted, self.missions)?,
-            control_cost: mean(self.control_cost),
-            metres: mean(self.metres),
-            calibration: [
-                calibration(self.by_prior[0], self.missions, sorted),
-                calibration(self.by_prior[1], self.missions, sorted),
-            ],
-        })
-    }
-}
-
-/// The calibration by one prior, from its sums and the next `missions` sorted probabilities.
-fn calibration(sums: StatementSums, missions: u64, sorted: &mut Sorted) -> Calibration {
-    let size = missions.div_ceil(BINS);
-    let mut best = Vec::new();
-    for start in (0..missions).step_by(size as usize) {
-        let n = size.min(missions - start);
-        let (mut stated, mut holds) = (0.0, 0.0);
-        for value in sorted.take(n as usize) {
-            stated += value.number;
-            holds += share(value.is_marked);
+            hypotheses: mean(|it| it.hypotheses as f64),
+            pruned_mass: missions.iter().map(|it| it.pruned_mass).fold(0.0, f64::max),
+            mean_deg: Spread::of(missions, |it| it.mean_deg),
+            mean_misclassified: Spread::of(missions, |it| it.mean_misclassified),
+            control_cost: mean(|it| it.control_cost),
+            metres: mean(|it| it.metres),
+            coverage: mean(|it| f64::from(u8::from(it.credible_holds))),
+            stated: mean(|it| it.credible_probability),
         }
-        best.push((n, stated / n as f64, holds / n as f64));
     }
-    let n = missions as f64;
-    Calibration { coverage: sums.credible_holds / n, stated: sums.credible_probability / n, best }
 }

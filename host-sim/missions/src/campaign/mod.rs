@@ -10,6 +10,5 @@ pub mod field_record;
 pub mod fronts;
 pub mod patches;
 pub mod rows;
-mod sorting;
 pub mod spread;
 pub mod standard_field;

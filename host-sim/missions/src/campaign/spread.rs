@@ -1,12 +1,19 @@
 //! How figures of an ensemble spread.
 
-use anyhow::{Context as _, Result};
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
-use crate::campaign::sorting::Sorted;
+/// What missions came to at each stage, in the order of their fields.
+pub(crate) type Stages<C> = BTreeMap<u32, Vec<C>>;
+
+/// The mean of a figure over missions.
+pub(crate) fn mean<C>(missions: &[C], figure: impl Fn(&C) -> f64) -> f64 {
+    missions.iter().map(figure).sum::<f64>() / missions.len() as f64
+}
 
 /// Median, 90th percentile and worst.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// Half are at most this.
     pub median: f64,
@@ -17,21 +24,13 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The spread of the next `n` values, at least one.
-    pub(crate) fn of(values: &mut Sorted, n: u64) -> Result<Self> {
+    /// The spread of a figure over missions, one at least.
+    pub(crate) fn of<C>(missions: &[C], figure: impl Fn(&C) -> f64) -> Self {
+        let mut sorted: Vec<_> = missions.iter().map(figure).collect();
+        sorted.sort_unstable_by(f64::total_cmp);
         // Nearest rank: the smallest value that at least this share do not exceed.
-        let ranks = [5, 9, 10].map(|tenths| (n * tenths).div_ceil(10).max(1));
-        let mut spread = [0.0; 3];
-        for rank in 1..=n {
-            let value = values.next().context("a value is missing")?.number;
-            for (figure, of) in spread.iter_mut().zip(ranks) {
-                if rank == of {
-                    *figure = value;
-                }
-            }
-        }
-        let [median, p90, worst] = spread;
-        Ok(Self { median, p90, worst })
+        let rank = |tenths: usize| sorted[(sorted.len() * tenths).div_ceil(10).max(1) - 1];
+        Self { median: rank(5), p90: rank(9), worst: rank(10) }
     }
 
     /// The same in another unit.

@@ -14,20 +14,16 @@
 use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::dynamics::{Control, Dynamics};
-use planner_core::error::ObservationError;
 use planner_core::{
-    Belief, Heading, Label, Motion, Plan, Planner, Pose, Reading, Sample, Site, StopReason,
-    Tolerance, Workspace as _,
+    Heading, Label, Motion, Pose, Reading, Sample, Site, StopReason, Workspace as _,
 };
 
-use crate::mission::baseline::{motion, take_in};
+use crate::mission::baseline::{Ground, Strategy, motion};
 use crate::mission::strict::wrong;
 use crate::mission::terrain::Terrain;
 
 /// Bisects two chords, one after the other.
-pub struct Chords<D, B> {
-    dynamics: D,
-    belief: B,
+pub struct Chords {
     pair: [Chord; 2],
     /// How often a label is true.
     p: f64,
@@ -135,11 +131,10 @@ impl Chord {
     }
 }
 
-impl<D: Dynamics, B: Belief> Chords<D, B> {
+impl Chords {
     /// One that begins at a place, on chords with these ends, for a mission of so many motions, and labels at most, which are
     /// true with probability `p`.
     pub fn new(
-        (dynamics, belief): (D, B),
         mut ends: [[Site; 2]; 2],
         p: f64,
         start: Site,
@@ -149,7 +144,7 @@ impl<D: Dynamics, B: Belief> Chords<D, B> {
         ends.sort_by(|a, b| way(*a).total_cmp(&way(*b)));
         let (half, counts_labels) = (labels.unwrap_or(motions).div_ceil(2), labels.is_some());
         let pair = ends.map(Chord::new);
-        Self { dynamics, belief, pair, p, half, counts_labels, done: 0, arrives: false }
+        Self { pair, p, half, counts_labels, done: 0, arrives: false }
     }
 
     fn chord(&self) -> usize {
@@ -157,56 +152,31 @@ impl<D: Dynamics, B: Belief> Chords<D, B> {
     }
 }
 
-impl<D: Dynamics, B: Belief> Planner for Chords<D, B> {
-    type Belief = B;
-
-    fn plan(&mut self, pose: Pose) -> Plan {
-        if self.belief.is_full() {
-            return Plan::Stop(StopReason::SamplesFull);
-        }
-        let place = self.pair[self.chord()].median();
-        let (grid, from) = (self.dynamics.grid(), Point2::<f64>::from(pose.site));
+impl<D: Dynamics> Strategy<D> for Chords {
+    fn choose(&mut self, ground: &Ground<D>, pose: Pose) -> Result<Motion, StopReason> {
+        let (place, dynamics) = (self.pair[self.chord()].median(), &ground.dynamics);
+        let (grid, from) = (dynamics.grid(), Point2::<f64>::from(pose.site));
         let (way, longest) = (place - from, f64::from(grid.reach_m(grid.speeds() - 1)));
         self.arrives = way.norm() <= longest;
         let share = if self.arrives { 1.0 } else { longest / way.norm() };
         let heading = Heading::from_radians(way.y.atan2(way.x)).unwrap_or(pose.heading);
-        let Ok(site) = Site::try_from(from + way * share) else {
-            return Plan::Stop(StopReason::Cornered);
-        };
-        let [ray, _] = self.dynamics.around(pose, heading);
+        let site = Site::try_from(from + way * share).map_err(|_| StopReason::Cornered)?;
+        let [ray, _] = dynamics.around(pose, heading);
         let steps = share * way.norm() / f64::from(grid.reach_m(1));
         let action = grid.action(ray.index, (steps.round() as u16).clamp(1, grid.speeds() - 1));
         let turn = f64::from(heading.since(pose.heading).0.cast_signed()) * std::f64::consts::PI
             / f64::from(1_u32 << 31);
         let control = Control { distance_m: (share * way.norm()) as f32, turn_rad: turn as f32 };
         let wants_label = self.arrives || !self.counts_labels;
-        let motion = motion(&self.dynamics, pose, action, Pose { site, heading });
-        Plan::Move(Motion { control, wants_label, ..motion })
+        let motion = motion(dynamics, pose, action, Pose { site, heading });
+        Ok(Motion { control, wants_label, ..motion })
     }
 
-    fn observe_within(
-        &mut self,
-        pose: Pose,
-        reading: Option<Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
+    fn arrive(&mut self, _: &Ground<D>, pose: Pose, reading: Option<Reading>) {
         if let (true, Some(Reading::Side(label))) = (self.arrives, reading) {
             let chord = self.chord();
             self.pair[chord].observe(pose.site, label, self.p);
         }
         self.done += u32::from(self.arrives || !self.counts_labels);
-        take_in(&mut self.belief, pose, reading, tolerance)
-    }
-
-    fn observe_on_the_way(
-        &mut self,
-        site: Site,
-        reading: Reading,
-    ) -> Result<bool, ObservationError> {
-        self.belief.observe_on_the_way(site, reading)
-    }
-
-    fn belief(&self) -> &B {
-        &self.belief
     }
 }

@@ -11,21 +11,14 @@
 use anyhow::Result;
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Side};
-use planner_core::error::ObservationError;
-use planner_core::{
-    Belief, Heading, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance,
-    Workspace as _,
-};
+use planner_core::{Heading, Motion, Pose, Reading, Site, StopReason, Workspace as _};
 
-use crate::mission::baseline::{motion, take_in};
+use crate::mission::baseline::{Ground, Strategy, motion};
 use crate::mission::strict::wrong;
 use crate::mission::terrain::Terrain;
 
 /// Drives parallel tracks over a rectangle.
-pub struct Lawnmower<D, B> {
-    dynamics: D,
-    area: Terrain,
-    belief: B,
+pub struct Lawnmower {
     /// Where labels are read, in order.
     places: Vec<Site>,
     /// Which of them is next.
@@ -55,17 +48,17 @@ pub fn check_area(area: &Terrain) -> Result<()> {
     }
 }
 
-impl<D: Dynamics, B: Belief> Lawnmower<D, B> {
+impl Lawnmower {
     /// One that begins at a pose, for a mission of so many motions and labels at most.
     pub fn new(
-        (area, dynamics, belief): (Terrain, D, B),
+        (area, dynamics): (&Terrain, &impl Dynamics),
         start: Pose,
         motions: u32,
         labels: Option<u32>,
     ) -> Self {
-        let places = survey(&area, &dynamics, start, motions, labels.unwrap_or(motions));
+        let places = survey(area, dynamics, start, motions, labels.unwrap_or(motions));
         let always_reads = labels.is_none();
-        Self { dynamics, area, belief, places, next: 0, arrives: false, always_reads }
+        Self { places, next: 0, arrives: false, always_reads }
     }
 }
 
@@ -215,33 +208,19 @@ fn toward(dynamics: &impl Dynamics, pose: Pose, place: Site) -> Option<Leg> {
     Some(Leg { action, target, arrives: steps <= f64::from(last) })
 }
 
-impl<D: Dynamics, B: Belief> Planner for Lawnmower<D, B> {
-    type Belief = B;
-
-    fn plan(&mut self, pose: Pose) -> Plan {
-        if self.belief.is_full() {
-            return Plan::Stop(StopReason::SamplesFull);
-        }
-        let is_inside = |site| self.area.contains(site);
+impl<D: Dynamics> Strategy<D> for Lawnmower {
+    fn choose(&mut self, ground: &Ground<D>, pose: Pose) -> Result<Motion, StopReason> {
+        let is_inside = |site| ground.area.contains(site);
         let place = self.places.get(self.next);
-        let leg = place.and_then(|&place| toward(&self.dynamics, pose, place));
-        let Some(Leg { action, target, arrives }) =
-            leg.filter(|leg| is_inside(leg.target.site) || !is_inside(pose.site))
-        else {
-            return Plan::Stop(StopReason::Cornered);
-        };
+        let leg = place.and_then(|&place| toward(&ground.dynamics, pose, place));
+        let leg = leg.filter(|leg| is_inside(leg.target.site) || !is_inside(pose.site));
+        let Leg { action, target, arrives } = leg.ok_or(StopReason::Cornered)?;
         self.arrives = arrives;
         let wants_label = (arrives || self.always_reads) && is_inside(target.site);
-        let motion = motion(&self.dynamics, pose, action, target);
-        Plan::Move(Motion { wants_label, ..motion })
+        Ok(Motion { wants_label, ..motion(&ground.dynamics, pose, action, target) })
     }
 
-    fn observe_within(
-        &mut self,
-        pose: Pose,
-        reading: Option<Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
+    fn arrive(&mut self, _: &Ground<D>, _: Pose, _: Option<Reading>) {
         if self.arrives {
             self.next += 1;
             if self.next == self.places.len() {
@@ -250,18 +229,5 @@ impl<D: Dynamics, B: Belief> Planner for Lawnmower<D, B> {
                 self.next = usize::from(self.places.len() > 1);
             }
         }
-        take_in(&mut self.belief, pose, reading, tolerance)
-    }
-
-    fn observe_on_the_way(
-        &mut self,
-        site: Site,
-        reading: Reading,
-    ) -> Result<bool, ObservationError> {
-        self.belief.observe_on_the_way(site, reading)
-    }
-
-    fn belief(&self) -> &B {
-        &self.belief
     }
 }

@@ -15,28 +15,15 @@
 
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Side};
-use planner_core::error::ObservationError;
 use planner_core::search::recovery::Recovery;
-use planner_core::{
-    Certainty, Line, Motion, Plan, Planner, Pose, Reading, Site, StopReason, Tolerance,
-    Workspace as _,
-};
+use planner_core::{Certainty, Line, Motion, Pose, Site, StopReason, Workspace as _};
 
-use crate::mission::baseline::{motion, take_in};
+use crate::mission::baseline::{Ground, Strategy, motion};
 use crate::mission::definition::Table;
 use crate::mission::given::Lines;
-use crate::mission::read_out::ReadOut;
-use crate::mission::terrain::Terrain;
 
 /// Takes the drive that ends nearest to the maximum-margin line, on uncertain ground.
-pub struct Margin<D, B> {
-    /// The action set.
-    pub dynamics: D,
-    /// Where positions stay.
-    pub area: Terrain,
-    /// What has been learnt on the way.
-    pub belief: B,
-}
+pub struct Margin;
 
 /// A drive that stays in the area, or comes back to it.
 #[derive(Clone, Copy)]
@@ -51,7 +38,7 @@ struct Drive {
     distance: f64,
 }
 
-impl<D: Dynamics, B: ReadOut> Margin<D, B> {
+impl<D: Dynamics> Ground<D> {
     /// The drives from a pose: by their turns, the smallest first, left before right.
     fn drives(&self, line: &Line, pose: Pose) -> impl Iterator<Item = Drive> {
         let grid = self.dynamics.grid();
@@ -115,53 +102,26 @@ fn nearest(drives: impl Iterator<Item = Drive>) -> Option<Drive> {
     })
 }
 
-impl<D: Dynamics, B: ReadOut> Planner for Margin<D, B> {
-    type Belief = B;
-
-    fn plan(&mut self, pose: Pose) -> Plan {
-        if self.belief.is_full() {
-            return Plan::Stop(StopReason::SamplesFull);
-        }
-        let Some(line) = self.belief.estimates().maximum_margin.map(Line::from) else {
-            return Plan::Stop(StopReason::Resolution);
-        };
-        let (recovery, action, target) = if let Some(drive) = self.asking(&line, pose) {
+impl<D: Dynamics> Strategy<D> for Margin {
+    fn choose(&mut self, ground: &Ground<D>, pose: Pose) -> Result<Motion, StopReason> {
+        let line = ground.belief.estimates().maximum_margin.map(Line::from);
+        let line = line.ok_or(StopReason::Resolution)?;
+        let (recovery, action, target) = if let Some(drive) = ground.asking(&line, pose) {
             (None, drive.action, drive.target)
-        } else if let Some((action, target)) = self.reorient(&line, pose) {
+        } else if let Some((action, target)) = ground.reorient(&line, pose) {
             (Some(Recovery::Reorient), action, target)
-        } else if let Some(drive) = nearest(self.drives(&line, pose)) {
+        } else if let Some(drive) = nearest(ground.drives(&line, pose)) {
             (Some(Recovery::Transit), drive.action, drive.target)
-        } else if let Some((action, target)) = self.dynamics.turn_in_place(pose, Side::Left) {
+        } else if let Some((action, target)) = ground.dynamics.turn_in_place(pose, Side::Left) {
             (Some(Recovery::Reorient), action, target)
         } else {
-            return Plan::Stop(StopReason::Cornered);
+            return Err(StopReason::Cornered);
         };
-        Plan::Move(Motion {
+        Ok(Motion {
             recovery,
             wants_label: recovery.is_none(),
-            examined: u32::try_from(self.dynamics.grid().actions()).unwrap_or(u32::MAX),
-            ..motion(&self.dynamics, pose, action, target)
+            examined: u32::try_from(ground.dynamics.grid().actions()).unwrap_or(u32::MAX),
+            ..motion(&ground.dynamics, pose, action, target)
         })
-    }
-
-    fn observe_within(
-        &mut self,
-        pose: Pose,
-        reading: Option<Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        take_in(&mut self.belief, pose, reading, tolerance)
-    }
-
-    fn observe_on_the_way(
-        &mut self,
-        site: Site,
-        reading: Reading,
-    ) -> Result<bool, ObservationError> {
-        self.belief.observe_on_the_way(site, reading)
-    }
-
-    fn belief(&self) -> &B {
-        &self.belief
     }
 }

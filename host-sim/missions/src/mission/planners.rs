@@ -4,14 +4,15 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::watch::Alarm;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Belief, Cfc, Estimates, FrontState,
-    FrontStretch, Guard, Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc,
-    Site, Tolerance, Track, Trust, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Cfc, Estimates, FrontState, FrontStretch,
+    Guard, Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance,
+    Track, Trust, Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::baseline::{Baseline, Ground, Strategy};
 use crate::mission::chords::{self, Chords};
 use crate::mission::definition::{DoubtfulBelief, HYPOTHESES, Mission};
 use crate::mission::from_nothing::FromNothing;
@@ -20,7 +21,6 @@ use crate::mission::lawnmower::Lawnmower;
 use crate::mission::margin::Margin;
 use crate::mission::random_walk::RandomWalk;
 use crate::mission::read_out::{AnyPlanner, ReadOut};
-use crate::mission::terrain::Terrain;
 
 /// Why a constructor cannot refuse a mission's settings.
 const FITS: &str = "settings that contradict each other were refused";
@@ -83,7 +83,33 @@ impl Mission {
     /// # Panics
     /// When settings contradict each other. Reading scenario files and flags refuses such settings.
     pub fn planner(&self) -> AnyPlanner {
-        self.planner_of(self.vehicle)
+        let (area, dynamics) = (self.terrain(), self.vehicle);
+        match self.algorithm {
+            _ if self.begins_from_nothing() && self.algorithm != Algorithm::Lawnmower => {
+                Box::new(FromNothing::new(self, dynamics, Self::planner))
+            }
+            Algorithm::Cfc => erased(self.cfc(area, dynamics)),
+            Algorithm::Scc => erased(self.scc(area, dynamics)),
+            Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
+            Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
+            Algorithm::Chords => {
+                let ends = chords::ends(self.oracle()).expect(FITS);
+                let p = self.noise_told().reliability.nominal().probability();
+                let most = (self.steps, self.asking.labels);
+                self.baseline(Chords::new(ends, p, self.start.site, most))
+            }
+            Algorithm::Margin => self.baseline(Margin),
+            Algorithm::Random => self.baseline(RandomWalk(ChaCha8Rng::seed_from_u64(self.seed))),
+            Algorithm::Lawnmower => {
+                let of = (&area, &dynamics);
+                let mower = Lawnmower::new(of, self.start, self.steps, self.asking.labels);
+                self.baseline(mower)
+            }
+            Algorithm::Track => match self.watch {
+                Some(metres) => erased(self.guard(area, dynamics, metres)),
+                None => erased(self.track(area, dynamics)),
+            },
+        }
     }
 
     /// What is known before the first label.
@@ -101,48 +127,9 @@ impl Mission {
         }
     }
 
-    fn planner_of(&self, dynamics: AnyVehicle) -> AnyPlanner {
-        let (area, rng) = (self.terrain(), ChaCha8Rng::seed_from_u64(self.seed));
-        match self.algorithm {
-            Algorithm::Lawnmower if self.begins_from_nothing() => {
-                erased(self.lawnmower((area, dynamics, self.sought())))
-            }
-            _ if self.begins_from_nothing() => {
-                Box::new(FromNothing::new(self, dynamics, Self::planner))
-            }
-            Algorithm::Cfc => erased(self.cfc(area, dynamics)),
-            Algorithm::Scc => erased(self.scc(area, dynamics)),
-            Algorithm::Lookahead if self.is_noisy() => erased(self.doubtful(area, dynamics)),
-            Algorithm::Lookahead => erased(self.lookahead(area, dynamics)),
-            Algorithm::Chords if self.is_noisy() => erased(self.chords((dynamics, self.table()))),
-            Algorithm::Chords => erased(self.chords((dynamics, self.lines()))),
-            Algorithm::Margin if self.is_noisy() => {
-                erased(Margin { dynamics, area, belief: self.table() })
-            }
-            Algorithm::Margin => erased(Margin { dynamics, area, belief: self.lines() }),
-            Algorithm::Random if self.is_noisy() => {
-                erased(RandomWalk { dynamics, area, belief: self.table(), rng })
-            }
-            Algorithm::Random => erased(RandomWalk { dynamics, area, belief: self.lines(), rng }),
-            Algorithm::Lawnmower if self.is_noisy() => {
-                erased(self.lawnmower((area, dynamics, self.table())))
-            }
-            Algorithm::Lawnmower => erased(self.lawnmower((area, dynamics, self.lines()))),
-            Algorithm::Track => match self.watch {
-                Some(metres) => erased(self.guard(area, dynamics, metres)),
-                None => erased(self.track(area, dynamics)),
-            },
-        }
-    }
-
-    fn chords<D: Dynamics, B: Belief>(&self, of: (D, B)) -> Chords<D, B> {
-        let ends = chords::ends(self.oracle()).expect(FITS);
-        let p = self.noise_told().reliability.nominal().probability();
-        Chords::new(of, ends, p, self.start.site, (self.steps, self.asking.labels))
-    }
-
-    fn lawnmower<D: Dynamics, B: Belief>(&self, of: (Terrain, D, B)) -> Lawnmower<D, B> {
-        Lawnmower::new(of, self.start, self.steps, self.asking.labels)
+    fn baseline(&self, strategy: impl Strategy<AnyVehicle> + 'static) -> AnyPlanner {
+        let (dynamics, area) = (self.vehicle, self.terrain());
+        Box::new(Baseline { strategy, ground: Ground { dynamics, area, belief: self.belief() } })
     }
 
     /// The follower of fronts with the mission's settings.

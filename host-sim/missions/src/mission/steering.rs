@@ -7,12 +7,9 @@
 use std::f64::consts::PI;
 
 use planner_core::dynamics::Dynamics;
-use planner_core::error::ObservationError;
-use planner_core::{
-    Heading, Label, Plan, Planner, Pose, Reading, StopReason, Tolerance, Workspace,
-};
+use planner_core::{Heading, Label, Motion, Pose, Reading, StopReason, Workspace};
 
-use crate::mission::baseline::{motion, take_in};
+use crate::mission::baseline::{Baseline, Ground, Strategy, motion};
 use crate::mission::crossings::Crossings;
 
 /// When the robot turns towards the front, and by what angle, radians.
@@ -38,13 +35,11 @@ pub const BANG_BANG: Steering = Steering::BangBang(PI / 18.0);
 
 /// Steers by the labels. It begins along the front, as the given points have it, in the direction nearer to its heading.
 #[derive(Clone, Debug)]
-pub struct Steered<D, G> {
-    dynamics: D,
-    area: G,
-    crossings: Crossings,
+pub struct Steered {
     steering: Steering,
-    /// The speed of all motions, in steps of the grid.
+    /// The speed of all motions, in steps of the grid, and their length, metres.
     speed: u16,
+    metres: f64,
     /// Whither it goes; `None` before the first motion.
     course: Option<Course>,
 }
@@ -70,23 +65,24 @@ impl Course {
     }
 }
 
-impl<D: Dynamics, G: Workspace> Steered<D, G> {
-    /// One with motions of about so many metres.
-    pub fn new(
+impl Steered {
+    /// A planner with motions of about so many metres.
+    pub fn planner<D: Dynamics, G: Workspace>(
         (area, dynamics): (G, D),
         crossings: Crossings,
         steering: Steering,
         metres: f64,
-    ) -> Self {
+    ) -> Baseline<Self, D, Crossings, G> {
         let grid = dynamics.grid();
         let steps = libm::round(metres * 1e3 / f64::from(grid.speed_step_mm()));
         let speed = (steps as u16).clamp(1, grid.speeds().saturating_sub(1));
-        Self { dynamics, area, crossings, steering, speed, course: None }
+        let strategy = Self { steering, speed, metres: grid.reach_m(speed).into(), course: None };
+        Baseline { strategy, ground: Ground { dynamics, area, belief: Box::new(crossings) } }
     }
 
     /// The course after a label, with the one before.
     fn after(&self, course: Course, before: Option<Label>, label: Label) -> Course {
-        let course = Course { since: course.since + self.metres(), ..course };
+        let course = Course { since: course.since + self.metres, ..course };
         match (self.steering, before) {
             (Steering::BangBang(turn), _) => course.turned(turn, label),
             (Steering::Zigzag(turn), None) => course.turned(0.5 * turn, label),
@@ -101,57 +97,42 @@ impl<D: Dynamics, G: Workspace> Steered<D, G> {
             (Steering::Zigzag(_), _) => course,
         }
     }
-
-    /// The length of a motion.
-    fn metres(&self) -> f64 {
-        self.dynamics.grid().reach_m(self.speed).into()
-    }
 }
 
-impl<D: Dynamics, G: Workspace> Planner for Steered<D, G> {
-    type Belief = Crossings;
-
-    fn plan(&mut self, pose: Pose) -> Plan {
+impl<D: Dynamics, G: Workspace> Strategy<D, Crossings, G> for Steered {
+    fn choose(
+        &mut self,
+        ground: &Ground<D, Crossings, G>,
+        pose: Pose,
+    ) -> Result<Motion, StopReason> {
+        let Ground { dynamics, area, belief } = ground;
         let begun = || {
-            let (angle, is_left) = self.crossings.ahead(pose.heading.radians());
+            let (angle, is_left) = belief.ahead(pose.heading.radians());
             Course { angle, sense: if is_left { 1.0 } else { -1.0 }, since: 0.0, turns: 0.0 }
         };
         let course = self.course.unwrap_or_else(begun);
         self.course = Some(course);
         let leg = Heading::from_radians(course.angle).ok().and_then(|heading| {
-            let [ray, _] = self.dynamics.around(pose, heading);
-            let action = self.dynamics.grid().action(ray.index, self.speed);
-            Some((action, self.dynamics.target(pose, action)?))
+            let [ray, _] = dynamics.around(pose, heading);
+            let action = dynamics.grid().action(ray.index, self.speed);
+            Some((action, dynamics.target(pose, action)?))
         });
-        match leg.filter(|(_, target)| self.area.contains(target.site)) {
-            Some((action, target)) => Plan::Move(motion(&self.dynamics, pose, action, target)),
-            None => Plan::Stop(StopReason::Cornered),
-        }
+        let leg = leg.filter(|(_, target)| area.contains(target.site));
+        let (action, target) = leg.ok_or(StopReason::Cornered)?;
+        Ok(motion(dynamics, pose, action, target))
     }
 
-    fn observe_within(
-        &mut self,
-        pose: Pose,
-        reading: Option<Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        let before = self.crossings.label();
-        take_in(&mut self.crossings, pose, reading, tolerance)?;
+    fn arrive(&mut self, ground: &Ground<D, Crossings, G>, _: Pose, reading: Option<Reading>) {
         if let (Some(Reading::Side(label)), Some(course)) = (reading, self.course) {
-            self.course = Some(self.after(course, before, label));
+            self.course = Some(self.after(course, ground.belief.label(), label));
         }
-        Ok(())
-    }
-
-    fn belief(&self) -> &Crossings {
-        &self.crossings
     }
 }
 
 #[cfg(test)]
 mod tests {
     use nalgebra::Point2;
-    use planner_core::{Area, Sample, Unicycle};
+    use planner_core::{Area, Plan, Planner as _, Sample, Unicycle};
 
     use super::*;
 
@@ -166,7 +147,7 @@ mod tests {
         let area = Area::metres([-500.0, -500.0], [500.0, 500.0]).expect("an area");
         let vehicle = Unicycle::new(1_000, 1.6, 11, 100).expect("a vehicle");
         let crossings = Crossings::given(&given);
-        let mut planner = Steered::new((area, vehicle), crossings, steering, 1.0);
+        let mut planner = Steered::planner((area, vehicle), crossings, steering, 1.0);
         let mut pose =
             Pose::at([0.0, 2.0], Heading::from_radians(0.3).expect("an angle")).expect("a pose");
         let mut places = Vec::new();

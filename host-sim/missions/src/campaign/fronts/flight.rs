@@ -14,6 +14,7 @@ use crate::campaign::fronts::following::{Course, Flown, Follower, REACH, Vertex,
 use crate::campaign::fronts::kinds::{KINDS, Kind};
 use crate::campaign::fronts::summary::{Row, Summary};
 use crate::campaign::fronts::who::Who;
+use crate::mission::baseline::Baseline;
 use crate::mission::crossings::Crossings;
 use crate::mission::steering::{BANG_BANG, Steered, ZIGZAG};
 use crate::output::notes::progress;
@@ -90,7 +91,7 @@ impl Fronts {
         let course = Course { motions: libm::round(STEPS / steps) as u32, steps, p };
         let (sea, vehicle) = (sea()?, vehicle(reach)?);
         let steered = |steering| {
-            Steered::new((sea, vehicle), Crossings::given(&front.given()), steering, reach)
+            Steered::planner((sea, vehicle), Crossings::given(&front.given()), steering, reach)
         };
         Ok(match self.who {
             Who::Track => {
@@ -108,7 +109,7 @@ impl Fronts {
     }
 }
 
-impl<D: Dynamics, G: Workspace> Follower for Steered<D, G> {
+impl<D: Dynamics, G: Workspace> Follower for Baseline<Steered, D, Crossings, G> {
     fn vertices(&self) -> Vec<Vertex> {
         let vertex = |at| Vertex { at, half_width: None, age: 0.0 };
         self.belief().crossing.map(vertex).into_iter().collect()
