@@ -3,5 +3,4 @@
 pub mod brute;
 pub mod exact_mean;
 pub mod joint;
-pub mod ladder;
 pub mod probit;

@@ -1,4 +1,5 @@
-//! The search returns the very action that trying all of them would return, ties included.
+//! The search returns the very action that trying all of them would return, ties included. Along missions
+//! `missions::fields` says so of every plan.
 
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -53,44 +54,6 @@ fn check<D: Dynamics, const N: usize>(
         examined += u64::from(quick.examined);
     }
     (states, examined)
-}
-
-/// With the paper's grid, and in one step of twenty on rays 1 urad apart: the finest steps and the paper's speeds, but not as
-/// far to either side, so that all can be tried.
-#[test]
-fn equals_exhaustive_search_along_missions() {
-    let [states, examined, found] = [0; 3].map(|_| AtomicU64::new(0));
-    let fine = Unicycle::new(1, 0.006, 21, 100).expect("a grid");
-    (0..cases(4, 150)).into_par_iter().for_each(|number| {
-        let mission = standard_field::standard(11, number, Algorithm::Cfc, 40);
-        let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(number));
-        let (area, weight, unicycle) =
-            (mission.config.area, EffortWeight::PAPER, Unicycle::paper());
-        let (mut from, mut before, mut step) = (mission.start, mission.lines(), 0);
-        let flown = mission.fly(|taken, belief| {
-            step += 1;
-            let context = format!("field {number}, step {step}");
-            let (n, e) = check(&unicycle, &before, area, weight, from, &context);
-            states.fetch_add(n, Relaxed);
-            examined.fetch_add(e, Relaxed);
-            if step % 20 == 5 {
-                check(&fine, &before, area, weight, from, &context);
-                let rule = ArcRule::default();
-                let problem = Problem { lines: before.lines(), area, weight, rule };
-                found.fetch_add(u64::from(problem.solve(&fine, from).best.is_some()), Relaxed);
-            }
-            before = belief.version_space().expect("labels are true").clone();
-            from = taken.pose;
-            // The same place, facing anywhere: the poses that recovery meets.
-            if rng.random_range(0..3) == 0 {
-                from.heading = Heading(rng.random());
-            }
-        });
-        assert!(flown.is_ok());
-    });
-    let [states, examined, found] = [states, examined, found].map(AtomicU64::into_inner);
-    assert!(states >= cases(500, 20_000) && found >= cases(2, 50), "{states}, {found}");
-    assert!(examined as f64 <= 0.05 * 6657.0 * states as f64, "{examined} in {states} states");
 }
 
 /// Beside the area, where an error may bring the agent: motions lead back in.
@@ -200,6 +163,11 @@ fn equals_exhaustive_search_anywhere_for_any_grid() {
         }
         if seed % 8 == 0 {
             count += check(&Unicycle::paper(), &space, area, weight, pose, &context).0;
+        }
+        if seed % 40 == 5 {
+            // Rays 1 urad apart, but not as far to either side, so that all can be tried.
+            let finest = Unicycle::new(1, 0.006, 21, 100).expect("a grid");
+            count += check(&finest, &space, area, weight, pose, &context).0;
         }
         states.fetch_add(count, Relaxed);
     });
