@@ -235,7 +235,7 @@ impl<D: Dynamics> Fly<'_, D> {
         let bounds = self.mission.config.area.bounds();
         let [from, to] = [bounds.min(), bounds.max()].map(metres);
         let grid = self.vehicle.grid();
-        let round = 2.0 * (to[0] - from[0] + to[1] - from[1]);
+        let round = 2.0 * (to - from).sum();
         FRUITLESS + (round / f64::from(grid.reach_m(grid.speeds() - 1))) as u32
     }
 
@@ -367,5 +367,5 @@ impl Flight {
 fn is_same(a: Pose, b: Pose) -> bool {
     let [p, q] = [a.site, b.site].map(metres);
     let turned = (a.heading.0.wrapping_sub(b.heading.0) as i32).unsigned_abs();
-    (p[0] - q[0]).hypot(p[1] - q[1]) < 1e-3 && turned < 1 << 20
+    (p - q).norm() < 1e-3 && turned < 1 << 20
 }

@@ -2,16 +2,17 @@
 //! planner.
 
 use host_sim::mission::definition::Mission;
+use nalgebra::Point2;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Pose, Site};
 
 /// A point in metres.
-pub type Point = [f64; 2];
+pub type Point = Point2<f64>;
 
 /// A site in metres.
 pub fn metres(site: Site) -> Point {
-    [site.x(), site.z()].map(|units| f64::from(units) / f64::from(UNITS_PER_METRE))
+    Point::new(site.x().into(), site.z().into()) / f64::from(UNITS_PER_METRE)
 }
 
 /// An area in metres.
@@ -49,7 +50,7 @@ impl Ground {
     /// How far inside the border a point lies; negative outside.
     pub fn depth(&self, p: Point) -> f64 {
         edges(&self.border)
-            .map(|(a, b)| cross(sub(b, a), sub(p, a)) / norm(sub(b, a)))
+            .map(|(a, b)| (b - a).perp(&(p - a)) / (b - a).norm())
             .fold(f64::INFINITY, f64::min)
     }
 
@@ -90,30 +91,14 @@ pub fn path(
         .map(|k| {
             let share = f64::from(k) / f64::from(points);
             if !is_car || k == points {
-                return [0, 1].map(|i| start[i] + share * (end[i] - start[i]));
+                return start + (end - start) * share;
             }
             let half = 0.5 * turn * share;
             let chord = length * share * if half == 0.0 { 1.0 } else { half.sin() / half };
             let (sin, cos) = (from.heading.radians() + half).sin_cos();
-            [start[0] + chord * cos, start[1] + chord * sin]
+            Point::new(start.x + chord * cos, start.y + chord * sin)
         })
         .collect()
-}
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-fn cross(a: Point, b: Point) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
 }
 
 fn edges(corners: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
@@ -121,14 +106,14 @@ fn edges(corners: &[Point]) -> impl Iterator<Item = (Point, Point)> + '_ {
 }
 
 fn distance_to_hull(p: Point, hull: &[Point]) -> f64 {
-    if hull.len() > 2 && edges(hull).all(|(a, b)| cross(sub(b, a), sub(p, a)) >= 0.0) {
+    if hull.len() > 2 && edges(hull).all(|(a, b)| (b - a).perp(&(p - a)) >= 0.0) {
         return 0.0;
     }
     edges(hull).map(|edge| distance_to_edge(p, edge)).fold(f64::INFINITY, f64::min)
 }
 
 fn distance_to_edge(p: Point, (a, b): (Point, Point)) -> f64 {
-    let along = sub(b, a);
-    let t = (dot(sub(p, a), along) / dot(along, along).max(1e-30)).clamp(0.0, 1.0);
-    norm(sub(p, [a[0] + t * along[0], a[1] + t * along[1]]))
+    let along = b - a;
+    let t = (p - a).dot(&along) / along.norm_squared().max(1e-30);
+    (p - (a + along * t.clamp(0.0, 1.0))).norm()
 }

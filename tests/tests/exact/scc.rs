@@ -18,8 +18,8 @@ use planner_core::link::message::MissionArea;
 use planner_core::motion::unicycle::Grid;
 use planner_core::robot::Body as _;
 use planner_core::{
-    AnyReliability, Belief as _, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose,
-    PosteriorView, Prior, Reliability, Sample, Scc, Site, Tolerance, Unicycle,
+    AnyReliability, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, PosteriorView,
+    Prior, Reliability, Sample, Scc, Site, Tolerance, Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -5,8 +5,8 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
 use planner_core::{
-    AnySight, AnyVehicle, Area, Far, Heading, Label, Lookahead, Near, NoGoal, Persist as _, Plan,
-    Planner as _, Pose, Sample, Sight, Site, Unicycle, VersionSpace,
+    AnyVehicle, Area, Far, Heading, Label, Lookahead, Plan, Planner as _, Pose, Sample, Unicycle,
+    VersionSpace,
 };
 use tests::cases;
 use tests::command;
@@ -119,88 +119,29 @@ fn boats_and_cars_have_no_price_that_their_motions_do_not_fit() {
     }
 }
 
-type Seeing<S> = Lookahead<Unicycle, VersionSpace<32>, Area, NoGoal, S>;
-
-fn square(side: f64) -> Area {
-    Area::metres([0.0; 2], [side; 2]).expect("an area")
-}
-
-/// The line is half-way up.
-fn label(area: &Area, site: Site) -> Label {
-    if 2 * site.z() >= area.max().z() { Label::Positive } else { Label::Negative }
-}
-
-/// A planner in a square whose given places are these shares of its side.
-fn planner<S: Sight>(side: f64, vehicle: Unicycle, sight: S) -> (Seeing<S>, Pose) {
-    let area = square(side);
-    let given = [[0.4, 0.3], [0.42, 0.66], [0.6, 0.72], [0.62, 0.38]].map(|at| {
-        let site = Site::metres(at.map(|it| side * it)).expect("inside");
-        Sample { site, label: label(&area, site) }
-    });
-    let space = VersionSpace::new(&given).expect("an oracle");
-    let planner = Lookahead::new(area, vehicle, space).expect("room").seeing(sight);
-    (planner, Pose { site: given[0].site, heading: Heading::default() })
-}
-
-/// Flies so many motions in a square of 500 m, has each looked at before it is made, and returns the labels and the poses.
-fn fly<S: Sight>(
-    sight: S,
-    motions: u32,
-    mut look: impl FnMut(&mut Seeing<S>, Pose),
-) -> (u32, Vec<Pose>) {
-    let (mut planner, mut pose) = planner(500.0, Unicycle::default(), sight);
-    let (mut labels, mut poses) = (0, Vec::new());
-    for _ in 0..motions {
-        look(&mut planner, pose);
-        let Plan::Move(motion) = planner.plan(pose) else { break };
-        pose = motion.target;
-        let reading = motion.wants_label.then(|| label(&square(500.0), pose.site).into());
-        labels += u32::from(reading.is_some());
-        planner.observe(pose, reading).expect("a true label");
-        poses.push(pose);
-    }
-    (labels, poses)
-}
-
-#[test]
-fn a_price_buys_driving_for_fewer_labels() {
-    let [low, some, high] = [1.0, 50.0, 16_384.0]
-        .map(|price| fly(Far::at_price(price).expect("a price"), 400, |_, _| ()).0);
-    assert!(low >= 28 && high < some && high >= 2, "{low}, {some}, {high} labels");
-    assert!(
-        Far::at_price(0.0).is_err()
-            && Far::at_price(-1.0).is_err()
-            && Far::at_price(f64::NAN).is_err()
-    );
-}
-
-/// A plan by a planner that was asleep on the way is the same, and so is that of a planner whose sight is chosen at run
-/// time.
-#[test]
-fn a_way_goes_on_after_a_sleep() {
-    let far = Far::across(&square(500.0));
-    let mut silent = 0;
-    fly(far, 150, |awake, pose| {
-        let plan = awake.plan(pose);
-        let (mut woken, _) = planner(500.0, Unicycle::default(), AnySight::from(Some(far)));
-        woken.restore(&awake.snapshot()).expect("its own snapshot");
-        assert_eq!(woken.plan(pose), plan);
-        silent += u32::from(matches!(plan, Plan::Move(motion) if !motion.wants_label));
-    });
-    assert!(silent > 50, "{silent}");
-    assert_eq!(fly(Near, 60, |_, _| ()), fly(AnySight::from(None), 60, |_, _| ()));
-}
-
 /// More motions than a number of 16 bits holds lead to the places of a large area, where motions are of millimetres.
 #[test]
 fn a_way_may_be_of_any_length() {
     let vehicle = Unicycle::new(1, std::f64::consts::FRAC_PI_2, 3, 1).expect("a vehicle");
-    let (mut planner, mut pose) =
-        planner(8_000.0, vehicle, Far::at_price(16_384.0).expect("a price"));
+    let area = Area::metres([0.0; 2], [8_000.0; 2]).expect("an area");
+    // The line is half-way up.
+    let given = [[0.4, 0.3], [0.42, 0.66], [0.6, 0.72], [0.62, 0.38]].map(|at| {
+        let label = if at[1] < 0.5 { Label::Negative } else { Label::Positive };
+        Sample::at(at.map(|it| 8_000.0 * it), label).expect("inside")
+    });
+    let space = VersionSpace::<32>::new(&given).expect("an oracle");
+    let planner = Lookahead::new(area, vehicle, space).expect("room");
+    let mut planner = planner.seeing(Far::at_price(16_384.0).expect("a price"));
+    let mut pose = Pose { site: given[0].site, heading: Heading::default() };
     for motion in 0..100 {
         let Plan::Move(next) = planner.plan(pose) else { panic!("it ends after {motion}") };
         assert!(!next.wants_label, "it gives up after {motion}");
         pose = next.target;
         planner.observe(pose, None).expect("no label");
     }
+}
+
+#[test]
+fn what_is_no_price_is_refused() {
+    assert!([0.0, -1.0, f64::NAN].iter().all(|it| Far::at_price(*it).is_err()));
 }

@@ -106,19 +106,22 @@ fn source(file: &str) -> String {
     fs::read_to_string(&path).unwrap_or_else(|why| panic!("{file}: {why}"))
 }
 
-/// The lines between the braces of a struct.
-fn body<'a>(source: &'a str, name: &str) -> &'a str {
+/// What stands before a struct, with its attributes, and the lines between its braces.
+fn parts<'a>(source: &'a str, name: &str) -> [&'a str; 2] {
     let is_end = |it: char| !it.is_alphanumeric();
-    let mut rest = source.split("struct ").skip(1);
-    let found = rest.find(|it| it.strip_prefix(name).is_some_and(|it| it.starts_with(is_end)));
-    let found = found.unwrap_or_else(|| panic!("no struct {name}"));
-    found.split_once("{\n").and_then(|it| it.1.split_once("\n}")).expect("fields").0
+    let mut all = source.match_indices("struct ").map(|(at, it)| source.split_at(at + it.len()));
+    let found = all.find(|it| it.1.strip_prefix(name).is_some_and(|it| it.starts_with(is_end)));
+    let (before, rest) = found.unwrap_or_else(|| panic!("no struct {name}"));
+    let fields = rest.split_once("{\n").and_then(|it| it.1.split_once("\n}")).expect("fields").0;
+    [before.rsplit("\n\n").next().unwrap_or_default(), fields]
 }
 
 /// The fields of a struct, a line each.
 fn keys(source: &str, name: &str, prefix: &str, marks: bool) -> String {
     let (mut lines, mut comment, mut attributes) = (String::new(), String::new(), String::new());
-    for line in body(source, name).lines().map(str::trim) {
+    let [head, body] = parts(source, name);
+    let skips_none = head.contains("skip_serializing_none");
+    for line in body.lines().map(str::trim) {
         if let Some(text) = line.strip_prefix("///") {
             comment += text;
         } else if line.starts_with("#[") {
@@ -129,8 +132,11 @@ fn keys(source: &str, name: &str, prefix: &str, marks: bool) -> String {
             if !attributes.contains("serde(skip)") && !attributes.contains("serde(flatten)") {
                 assert!(!comment.is_empty(), "{name}: {key} has no comment");
                 let means = comment.trim().trim_end_matches('.').replace("`None`", "null");
-                let is_optional = marks && attributes.contains("skip_serializing_if");
-                let mark = if is_optional { "?" } else { "" };
+                let is_skipped = skips_none
+                    && line.contains(": Option<")
+                    && !attributes.contains("serialize_always");
+                let is_optional = is_skipped || attributes.contains("skip_serializing_if");
+                let mark = if marks && is_optional { "?" } else { "" };
                 let _ = writeln!(lines, "- `{prefix}{key}`{mark}: {means}");
             }
             (comment, attributes) = (String::new(), String::new());
@@ -161,8 +167,8 @@ fn no_command_and_no_table_of_a_scenario_is_left_out() {
         assert!(text.contains(&marker), "{marker}");
     }
     let tables = source("mission/scenario.rs");
-    let tables =
-        body(&tables, "File").split("Table<").skip(1).filter_map(|it| it.split('>').next());
+    let [_, keys] = parts(&tables, "File");
+    let tables = keys.split("Table<").skip(1).filter_map(|it| it.split('>').next());
     for table in tables {
         assert!(text.contains(&format!(" {table} ")), "no keys of {table}");
     }
@@ -189,4 +195,6 @@ fn a_field_is_told_by_its_comment() {
                   /// `None`\n    /// or two\n    #[serde(skip_serializing_if = \"x\")]\n    c: Option<[u8; 2]>,\n}\n";
     assert_eq!(keys(source, "It", "it.", true), "- `it.a`: One\n- `it.c`?: null or two\n");
     assert_eq!(keys(source, "It", "", false), "- `a`: One\n- `c`: null or two\n");
+    let source = "#[skip_serializing_none]\nstruct It {\n/// One\na: Option<u8>,\n/// Two\n#[serialize_always]\nb: Option<u8>,\n}\n";
+    assert_eq!(keys(source, "It", "", true), "- `a`?: One\n- `b`: Two\n");
 }

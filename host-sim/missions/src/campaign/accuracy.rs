@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use planner_core::dynamics::Dynamics as _;
 use serde::Serialize;
+use serde_with::skip_serializing_none;
 
 use crate::campaign::course::Tally;
 use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress};
@@ -67,6 +68,7 @@ pub struct Row {
 }
 
 /// The results of a campaign.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Who planned.
@@ -76,10 +78,8 @@ pub struct Summary {
     /// Seed of the ensemble.
     pub seed: u64,
     /// What moved, unless it is the unicycle of a fan.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
     /// Readings of each motion, if there are several.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,
     /// The ensemble as steps go by.
     pub rows: Vec<Row>,

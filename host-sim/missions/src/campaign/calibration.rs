@@ -4,6 +4,7 @@
 use anyhow::Result;
 use planner_core::{AnyReliability, Line, PosteriorView, Prior, UnknownReliability};
 use serde::Serialize;
+use serde_with::skip_serializing_none;
 
 use crate::campaign::drawn;
 use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress, readings_told};
@@ -73,6 +74,7 @@ pub struct Row {
 }
 
 /// The results of a campaign.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// What was run.
@@ -84,15 +86,12 @@ pub struct Summary {
     /// Seed of the ensemble.
     pub seed: u64,
     /// What moved, unless it is the unicycle of a fan.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
     /// Labels are true with this probability; the mean of the prior where each field's is drawn from it.
     pub p: f64,
     /// Readings of each motion, if there are several.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,
     /// What planners are told instead.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub p_told: Option<PTold>,
     /// Whether it is drawn.
     #[serde(skip)]

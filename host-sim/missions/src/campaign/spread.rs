@@ -12,6 +12,18 @@ pub(crate) fn mean<C>(missions: &[C], figure: impl Fn(&C) -> f64) -> f64 {
     missions.iter().map(figure).sum::<f64>() / missions.len() as f64
 }
 
+/// Numbers in rising order.
+pub(crate) fn sorted(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut sorted: Vec<_> = numbers.collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted
+}
+
+/// Where the smallest of so many sorted numbers is that at least this share, per cent, do not exceed.
+pub(crate) fn rank(percent: usize, of: usize) -> usize {
+    (of * percent).div_ceil(100).max(1) - 1
+}
+
 /// Median, 90th percentile and worst.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
@@ -26,11 +38,9 @@ pub struct Spread {
 impl Spread {
     /// The spread of a figure over missions, one at least.
     pub(crate) fn of<C>(missions: &[C], figure: impl Fn(&C) -> f64) -> Self {
-        let mut sorted: Vec<_> = missions.iter().map(figure).collect();
-        sorted.sort_unstable_by(f64::total_cmp);
-        // Nearest rank: the smallest value that at least this share do not exceed.
-        let rank = |tenths: usize| sorted[(sorted.len() * tenths).div_ceil(10).max(1) - 1];
-        Self { median: rank(5), p90: rank(9), worst: rank(10) }
+        let sorted = sorted(missions.iter().map(figure));
+        let rank = |percent| sorted[rank(percent, sorted.len())];
+        Self { median: rank(50), p90: rank(90), worst: rank(100) }
     }
 
     /// The same in another unit.

@@ -6,16 +6,16 @@ use planner_core::bounds::{intercept_within, slope_within_degrees};
 use planner_core::error::ValueError;
 use planner_core::link::message::MissionArea;
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 /// `bounds` of a scenario file: what is known of the line beforehand.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bounds {
     /// The line's direction lies between these, degrees, less than 180 apart.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub slope: Option<[f64; 2]>,
     /// It crosses `x = 0` between these, metres.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub intercept: Option<[f64; 2]>,
 }
 

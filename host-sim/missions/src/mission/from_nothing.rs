@@ -8,6 +8,7 @@ use planner_core::{
     StopReason, Tolerance, VersionSpace, Workspace as _, aimed_for,
 };
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::{Mission, SoughtLine};
@@ -144,26 +145,22 @@ impl<D: Dynamics + 'static> Planner for FromNothing<D> {
 }
 
 /// What seeking the boundary from nothing came to.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SeekRecord {
     /// The step after which the boundary was found, if it was.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<usize>,
     /// Labels that were read until then, or until the end.
     pub labels: usize,
     /// Metres that were driven for them.
     pub metres: f64,
     /// The label that all of the area most likely has, where the boundary was not found.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub label: Option<i8>,
     /// Patches that hold a disc of this radius were sought, metres.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f32>,
     /// The probability that such a patch is left, if every second area has one; absent if no patch was sought.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub patch: Option<f32>,
     /// The same of a boundary that crosses the area.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub coast: Option<f32>,
 }
 

@@ -1,20 +1,20 @@
 //! The map of a front: what following it came to.
 
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::front::{PassedRecord, VertexRecord};
 use crate::world::World;
 
 /// What following a front came to.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MapRecord {
     /// How it stands in the end: `followed`, `closed`, `lost`, or `sought` if it was never found.
     pub state: State,
     /// The step after which the front was found first.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub found: Option<usize>,
     /// If it is lost: the last place where it was known (`step`, `x`, `z`).
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub lost: Option<LostRecord>,
     /// Vertices of the map.
     pub vertices: usize,
@@ -32,9 +32,9 @@ pub struct MapRecord {
     /// Metres driven since it was found.
     pub driven: f64,
     /// The half-widths (90 %), metres: their median and the largest. Null without vertices.
+    #[serialize_always]
     pub half_width: Option<[f64; 2]>,
     /// Beside the true front as it was then, if that is known.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub off: Option<OffRecord>,
 }
 

@@ -70,11 +70,15 @@ pub trait ReadOut: Belief + Debug + Send {
     /// What is expected of a label at a site, by the exact distribution.
     fn expects(&self, site: Site) -> Expectation;
 
-    /// Whether it [meets](Belief::meets) a goal.
-    fn reaches(&self, goal: Goal, area: Area) -> bool;
+    /// Whether it [meets](Belief::meets) a goal. A front goes on, and meets none.
+    fn reaches(&self, _: Goal, _: Area) -> bool {
+        false
+    }
 
-    /// All samples that it keeps, with the labels that were taken in, the given ones first.
-    fn samples(&self) -> &[Sample];
+    /// All samples that it keeps, with the labels that were taken in, the given ones first. A front keeps none.
+    fn samples(&self) -> &[Sample] {
+        &[]
+    }
 
     /// The lines that agree with every label, where these are true.
     fn version_space(&self) -> Option<&Lines> {
@@ -120,16 +124,6 @@ impl ReadOut for Curve {
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
         Expectation::of(chance, limit(self.reliability().into()) - limit(chance))
-    }
-
-    /// Never: a front goes on.
-    fn reaches(&self, _: Goal, _: Area) -> bool {
-        false
-    }
-
-    /// None: it keeps no samples.
-    fn samples(&self) -> &[Sample] {
-        &[]
     }
 
     fn front(&self) -> Option<&Curve> {
@@ -190,16 +184,6 @@ impl ReadOut for SoughtLine {
     fn expects(&self, site: Site) -> Expectation {
         let chance = self.chance(site);
         Expectation::of(chance, limit(self.reliability().into()) - limit(chance))
-    }
-
-    /// Never: a front goes on.
-    fn reaches(&self, _: Goal, _: Area) -> bool {
-        false
-    }
-
-    /// None: it keeps no samples.
-    fn samples(&self) -> &[Sample] {
-        &[]
     }
 
     fn sought(&self) -> Option<&SoughtLine> {

@@ -19,6 +19,7 @@ use planner_core::{
     Site, StopReason, Workspace as _,
 };
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::ToleranceRecord;
@@ -81,6 +82,7 @@ pub fn mapped(steps: &[StepResult], rest: &[PassedRecord]) -> Vec<Mapped> {
 pub const VERSION: u32 = 1;
 
 /// What a mission began with.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Start {
     /// The version of the trace: 1.
@@ -104,21 +106,18 @@ pub struct Start {
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
     /// What is known of the line beside them, as in a scenario file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Bounds>,
     /// What moved, with all keys of its kind in a scenario file, unless it is the unicycle of a fan.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub vehicle: Option<VehicleTable>,
     /// The tolerance and its parts, if it allows for more than positions that err.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<ToleranceRecord>,
     /// Where the agent began.
     #[serde(default)]
     pub pose: PoseRecord,
     /// The true line, if there is one that stays where it is.
+    #[serialize_always]
     pub truth: Option<LineRecord>,
     /// The true boundary, if it is no fixed line: the keys of `truth` in a scenario file, and a base or moving line as `line`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub boundary: Option<BoundaryRecord>,
     /// How the sensor fails, as in a scenario file.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -126,25 +125,18 @@ pub struct Start {
     /// Labels are true with this probability.
     pub p: f64,
     /// What planners are told instead: a number, or `[a, b]` of a prior.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub p_told: Option<PTold>,
     /// What a label costs, metres driven, if labels are sought beyond one motion.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub price: Option<f64>,
     /// Labels at most, if they are limited by themselves.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub labels: Option<u32>,
     /// Bits that a label must be expected to carry.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub worth: Option<f64>,
     /// What is told of the front, if one is followed, as in a scenario file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<FrontTable>,
     /// What is told of a boundary that is sought, if it is not the usual, as in a scenario file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seek: Option<SeekTable>,
     /// Readings a motion, if there are several.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub readings: Option<u32>,
     /// Whether they may err.
     #[serde(skip)]
@@ -158,6 +150,7 @@ pub struct Start {
 }
 
 /// A step: what was done, what was expected of it, what was read, and what was known after it.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StepResult {
     /// Its number, from 1.
@@ -165,8 +158,10 @@ pub struct StepResult {
     pub step: usize,
     /// What the motion is for: the paper's `P1` to `P4`, or `audit`, `seek`, `follow`, `pass` (a keep-out on the front), `return`;
     /// `None` of planners that pose no problem.
+    #[serialize_always]
     pub problem: Option<Name>,
     /// The rung of the recovery ladder: `undirected`, `reorient`, `transit`; `None` if it was not climbed.
+    #[serialize_always]
     pub recovery: Option<Name>,
     /// What was done: its `index` in the grid, `v`, the length of the motion in metres, and `w`, the turn in radians.
     #[serde(default)]
@@ -174,12 +169,11 @@ pub struct StepResult {
     /// Where it ended, as the robot reports it.
     pub pose: PoseRecord,
     /// Where the motion should have ended, if it ended elsewhere.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<PoseRecord>,
     /// Where the robot truly was, if it errs.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub true_pose: Option<PoseRecord>,
     /// What was sensed there: -1, 0 on the boundary, 1; `None` if nothing was.
+    #[serialize_always]
     pub label: Option<i8>,
     /// All readings of the motion in order, its label at the end included, where there are readings on the way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -189,6 +183,7 @@ pub struct StepResult {
     #[serde(default)]
     pub slope_arcs: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
+    #[serialize_always]
     pub intercept: Option<[f64; 2]>,
     /// Bits learnt since the start. Of labels that may be wrong, the divergence of the posterior from the uniform distribution;
     /// of a front, what is known now.
@@ -198,31 +193,23 @@ pub struct StepResult {
     #[serde(default)]
     pub examined: u32,
     /// `false` if the plan used up its looks, and so took the best action so far.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub proven: Option<bool>,
     /// Where the front is known best beside the robot, if one is followed and found.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<VertexRecord>,
     /// Places that the map has more, if a front is followed. Labels change them no more. Each has the keys of `front` too.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mapped: Vec<PassedRecord>,
     /// Where labels may err: whether the sample lies in a trusted ball.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub trusted: Option<bool>,
     /// Where labels may err: the number of hypotheses.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub hypotheses: Option<usize>,
     /// Where labels may err: the probability given up as the table was full, at most.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub pruned_mass: Option<f64>,
     /// Where labels may err: the entropy over the hypotheses, bits.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub entropy: Option<f64>,
     /// The evidence against a straight, still line, from a warning on (20).
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f32>,
     /// How a real vehicle made it.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Leg>,
     /// What a perfect sensor reads there, if the true line is known.
     #[serde(skip)]
@@ -242,6 +229,7 @@ pub struct StepResult {
 pub type Name = Cow<'static, str>;
 
 /// How a mission ended, and what was known then.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct End {
@@ -253,34 +241,24 @@ pub struct End {
     /// The estimates of the line, each null where there is none.
     pub estimates: EstimateRecords,
     /// The straight line that misclassifies least, where the true boundary is no fixed line.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub fit: Option<Box<FitRecord>>,
     /// Where labels may err: the paper's outcome, by the paper's prior.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub best: Option<BestRecord>,
     /// Where labels may err: the credible set, by the chosen prior.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub credible: Option<CredibleRecord>,
     /// What labels have shown of a reliability that nobody knows.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub reliability: Option<ReliabilityRecord>,
     /// The map of the front, if one was followed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub front: Option<MapRecord>,
     /// What seeking the boundary came to, if the mission began from nothing.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub seek: Option<SeekRecord>,
     /// Its goal, if it had one.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<GoalRecord>,
     /// The most that spoke against a straight, still line, from a warning on.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub alarm: Option<AlarmRecord>,
     /// What explains the labels, if something speaks against a straight, still line.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<Box<DiagnosisRecord>>,
     /// How near to its targets a real vehicle came.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub flown: Option<Legs>,
 }
 

@@ -31,7 +31,7 @@ use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, Pr
 use crate::mission::seeking::{self, SeekTable};
 use crate::mission::sensor::{self, FaultTable};
 use crate::mission::stop::StopTable;
-use crate::mission::strict::{Table, beyond, no_angle, wrong};
+use crate::mission::strict::{Table, beyond, checked, no_angle, wrong};
 use crate::mission::terrain::{self, AreaTable, KeepOutTable, Terrain, on_map, site};
 use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
@@ -424,10 +424,7 @@ pub fn check_steps(field: &str, steps: u32, oracle: usize, labels: Room) -> Resu
 /// # Errors
 /// Names `field`, the number and the limit.
 pub fn check_readings(field: &str, readings: u32) -> Result<()> {
-    if !(1..=MOST_READINGS).contains(&readings) {
-        return beyond(field, readings);
-    }
-    Ok(())
+    checked(field, readings, (1..=MOST_READINGS).contains(&readings)).map(drop)
 }
 
 fn mission(file: &mut File, folder: &Path, overrides: Overrides) -> Result<Mission> {
@@ -570,10 +567,7 @@ fn errors(table: &ErrorsTable) -> Result<Errors> {
 /// # Errors
 /// Names `field` and the number.
 pub fn deviation(field: &str, metres: f64) -> Result<f64> {
-    if !(0.0..=100.0).contains(&metres) {
-        return beyond(field, metres);
-    }
-    Ok(metres)
+    checked(field, metres, (0.0..=100.0).contains(&metres))
 }
 
 /// The part of the planner's tolerance for positions, metres: as given, otherwise as much as covers the robot's errors.
@@ -582,8 +576,7 @@ pub fn deviation(field: &str, metres: f64) -> Result<f64> {
 /// Names `field` and the number.
 pub fn position(field: &str, metres: Option<f64>, errors: Errors) -> Result<f64> {
     let metres = metres.unwrap_or(CUT * errors.position);
-    let is_one = Tolerance::new(metres).is_ok();
-    if is_one { Ok(metres) } else { beyond(field, metres) }
+    checked(field, metres, Tolerance::new(metres).is_ok())
 }
 
 /// Whether something is left to find out under a tolerance.
@@ -696,10 +689,7 @@ pub fn told(field: &str, p: f64) -> Result<f64> {
 /// # Errors
 /// Names `field` and the number.
 pub fn probability(field: &str, p: f64) -> Result<f64> {
-    if Reliability::new(p).is_err() {
-        return beyond(field, p);
-    }
-    Ok(p)
+    checked(field, p, Reliability::new(p).is_ok())
 }
 
 /// Whether this is a radius of trusted balls.
@@ -707,10 +697,7 @@ pub fn probability(field: &str, p: f64) -> Result<f64> {
 /// # Errors
 /// Names `field` and the number.
 pub fn trusted(field: &str, radius: f64) -> Result<f64> {
-    if trusted_radius(radius).is_none() {
-        return beyond(field, radius);
-    }
-    Ok(radius)
+    checked(field, radius, trusted_radius(radius).is_some())
 }
 
 /// Where it starts: at the oracle's first point, unless the file says otherwise.

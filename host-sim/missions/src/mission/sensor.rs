@@ -3,40 +3,33 @@
 use anyhow::Result;
 use planner_core::Label;
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::strict::{beyond, wrong};
 use crate::world::faults::{Fault, FaultKind};
 
 /// One fault: one kind, and the labels that it spoils, by their numbers from 1.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FaultTable {
     /// `true`: no reading
-    #[serde(skip_serializing_if = "Option::is_none")]
     off: Option<bool>,
     /// This label, -1 or 1
-    #[serde(skip_serializing_if = "Option::is_none")]
     stuck: Option<i64>,
     /// `true`: either label, each with probability 1/2
-    #[serde(skip_serializing_if = "Option::is_none")]
     garbage: Option<bool>,
     /// `true`: the opposite label
-    #[serde(skip_serializing_if = "Option::is_none")]
     inverted: Option<bool>,
     /// The label of the place so many metres before the end of the motion, 0 to 1024, or of its start if that is nearer
-    #[serde(skip_serializing_if = "Option::is_none")]
     slow: Option<f64>,
     /// The reading of the label that was asked for so many labels before; none for the first of them
-    #[serde(skip_serializing_if = "Option::is_none")]
     delayed: Option<i64>,
     /// No reading with this probability
-    #[serde(skip_serializing_if = "Option::is_none")]
     dropouts: Option<f64>,
     /// The first label that is spoilt, counted from 1 [default: 1]
-    #[serde(skip_serializing_if = "Option::is_none")]
     from: Option<i64>,
     /// The last one [default: no last one]
-    #[serde(skip_serializing_if = "Option::is_none")]
     to: Option<i64>,
 }
 

@@ -6,6 +6,7 @@
 use anyhow::Result;
 use planner_core::{Accuracy, Angle, Goal, Workspace as _};
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
@@ -115,34 +116,30 @@ impl StopTable {
 }
 
 /// What a mission was to find out, and whether it did.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct GoalRecord {
     /// Any two of the lines left make an angle of so many degrees at most.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub slope_arc_deg: Option<f64>,
     /// The ground on which some two of the lines left disagree is this share of the area at most.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub misclassified: Option<f64>,
     /// With this probability at least, where labels may be wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub level: Option<f64>,
     /// Whether the goal is met in the end, and nothing speaks against it.
     pub is_met: bool,
     /// What the audit came to, if there was one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub audit: Option<AuditRecord>,
 }
 
 /// The labels on ground of which the belief is sure, before a goal's promise, and their price.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct AuditRecord {
     /// Labels that the belief expected.
     pub agreed: usize,
     /// Other labels, where labels may be wrong.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disagreed: Option<usize>,
     /// The step with the label that refuted the model.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub refuted: Option<usize>,
     /// Whether all labels together refuted it, by an alarm, and not the last one of the audit.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -14,6 +14,7 @@ use planner_core::motion::car::{self};
 use planner_core::motion::unicycle::{self, Grid};
 use planner_core::{AnyVehicle, Area, Boat, Car, Unicycle, Workspace as _};
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::strict::{beyond, no_angle, wrong};
@@ -35,6 +36,7 @@ pub enum Kind {
 }
 
 /// `vehicle` of a scenario file and of a trace, and flags. Lengths in metres, angles in radians.
+#[skip_serializing_none]
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, clap::Args)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleTable {
@@ -43,27 +45,21 @@ pub struct VehicleTable {
     pub(crate) kind: Kind,
     /// The longest motion, metres, below 3000 [default: 2]
     #[arg(long, value_name = "METRES")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     reach: Option<f64>,
     /// From one length of motions to the next, metres [default: 0.1]
     #[arg(long = "speed-step", value_name = "METRES")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     step: Option<f64>,
     /// The sharpest turn (unicycle, boat), radians [default: pi/2]
     #[arg(long, value_name = "RADIANS")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     sharpest: Option<f64>,
     /// From one direction to the next, radians [default: the fan's]
     #[arg(long, value_name = "RADIANS")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     turn_step: Option<f64>,
     /// Radius of the turning circle (car), metres
     #[arg(long, value_name = "METRES")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     radius: Option<f64>,
     /// The shortest motion (car), metres [default: a step]
     #[arg(long, value_name = "METRES")]
-    #[serde(skip_serializing_if = "Option::is_none")]
     shortest: Option<f64>,
 }
 

@@ -6,6 +6,7 @@ use std::panic::RefUnwindSafe;
 use nalgebra::Point2;
 use planner_core::{Label, Reading};
 use serde::{Deserialize, Serialize};
+use serde_with::skip_serializing_none;
 
 use crate::world::way::Way;
 
@@ -25,32 +26,25 @@ pub trait Curve: Debug + Send + Sync + RefUnwindSafe {
 }
 
 /// A boundary that is no fixed line, by the keys that it has in a scenario file.
+#[skip_serializing_none]
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct BoundaryRecord {
     /// `a x + b z + c = 0` with `a^2 + b^2 = 1`, for a sine and for a line that moves.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub line: Option<[f64; 3]>,
     /// By so much the boundary moves in each motion: a line by metres and degrees, any other by metres along x and z.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub drift: Option<[f64; 2]>,
     /// The middle and the radius.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub circle: Option<[f64; 3]>,
     /// Height, length and phase.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub sine: Option<[f64; 3]>,
     /// The points.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub polyline: Option<Vec<[f64; 2]>>,
     /// A random coast: the deviation of its heights, its length scale, its seed.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub coast: Option<CoastRecord>,
     /// The file.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub raster: Option<String>,
     /// From this value up the label is +1.
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<f64>,
 }
 

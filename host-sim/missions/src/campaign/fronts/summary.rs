@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use crate::campaign::fronts::following::Flown;
 use crate::campaign::fronts::who::Who;
+use crate::campaign::spread::{rank, sorted};
 
 /// What the missions of a planner come to.
 #[derive(Clone, Debug, Serialize)]
@@ -55,16 +56,17 @@ impl Row {
         let vertices = || flown.iter().flat_map(|it| &it.vertices);
         let off = sorted(vertices().map(|it| it.off));
         let driven = sorted(flown.iter().map(|it| it.driven / it.followed.max(1.0)));
+        let at = |of: &[f64], percent| of.get(rank(percent, of.len())).copied();
         let stated: Vec<_> = vertices().filter_map(|it| it.is_covered).collect();
         let covers = share(&stated, |it| *it);
         let mean = |of: fn(&Flown) -> f64| flown.iter().map(of).sum::<f64>() / flown.len() as f64;
         Self {
             front,
             p,
-            off_median: rank(&off, 50),
-            off_p95: rank(&off, 95),
+            off_median: at(&off, 50),
+            off_p95: at(&off, 95),
             covers: (!stated.is_empty()).then_some(covers),
-            driven: rank(&driven, 50).filter(|_| !off.is_empty()),
+            driven: at(&driven, 50).filter(|_| !off.is_empty()),
             mapped: mean(|it| it.followed),
             labels: mean(|it| f64::from(it.labels)),
             began_again: share(flown, |it| it.restarts > 0),
@@ -75,18 +77,6 @@ impl Row {
 
 fn share<T>(of: &[T], is: impl Fn(&T) -> bool) -> f64 {
     of.iter().filter(|it| is(it)).count() as f64 / of.len() as f64
-}
-
-fn sorted(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
-    let mut sorted: Vec<_> = numbers.collect();
-    sorted.sort_by(f64::total_cmp);
-    sorted
-}
-
-/// The smallest number that at least so many per cent do not exceed.
-fn rank(sorted: &[f64], percent: usize) -> Option<f64> {
-    let rank = (sorted.len() * percent).div_ceil(100);
-    sorted.get(rank.max(1) - 1).copied()
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::campaign::patches::kinds::{KINDS, Kind};
+use crate::campaign::spread::{rank, sorted};
 use crate::output::notes::progress;
 
 /// A front that is said to be further away than so many widths is found falsely.
@@ -195,11 +196,8 @@ impl Row {
         let share = |is: fn(&Flown) -> bool| {
             flown.iter().filter(|it| is(it)).count() as f64 / flown.len() as f64
         };
-        let mut metres: Vec<_> =
-            flown.iter().filter(|it| it.is_found).map(|it| it.metres).collect();
-        metres.sort_by(f64::total_cmp);
-        let rank =
-            |percent: usize| metres.get((flown.len() * percent).div_ceil(100).max(1) - 1).copied();
+        let metres = sorted(flown.iter().filter(|it| it.is_found).map(|it| it.metres));
+        let at = |percent| metres.get(rank(percent, flown.len())).copied();
         let mut closing: Vec<_> = flown.iter().filter_map(|it| it.closing).collect();
         closing.sort_unstable();
         let is_stuck = |it: &Flown| it.stopped.is_some_and(|it| it != StopReason::OneLabel);
@@ -207,7 +205,7 @@ impl Row {
             kind,
             p,
             found: share(|it| it.is_found),
-            metres: [50, 90, 100].map(rank),
+            metres: [50, 90, 100].map(at),
             closing: closing.get(closing.len() / 2).copied(),
             false_finds: share(|it| it.is_false),
             empty: share(|it| it.is_empty),
