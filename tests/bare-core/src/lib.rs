@@ -27,6 +27,29 @@ pub use on_target::{fly, panicking};
 #[cfg(all(target_os = "none", target_arch = "riscv32"))]
 pub use riscv_rt::entry;
 
+/// A program that flies missions with some planners, of vehicles of one type in areas of one type. On a host there is
+/// nothing to run.
+#[macro_export]
+macro_rules! flies {
+    ($planners:ty, $vehicle:ty, $area:ty) => {
+        #[cfg(target_os = "none")]
+        #[$crate::entry]
+        fn main() -> ! {
+            #[allow(unused_imports, reason = "each program names some of these")]
+            use planner_core::{
+                AnySight, AnyVehicle, Area, SlopeWithin, Unicycle,
+                link::message::MissionArea,
+                link::station::{AllLabels, CfcAlone, Guards, Tracks, TrueLabels},
+            };
+
+            $crate::fly::<$planners, $vehicle, $area>()
+        }
+
+        #[cfg(not(target_os = "none"))]
+        fn main() {}
+    };
+}
+
 #[cfg(target_os = "none")]
 mod on_target {
     use core::convert::Infallible;

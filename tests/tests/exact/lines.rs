@@ -6,6 +6,7 @@ use nalgebra::{Point2, Vector2};
 use planner_core::{AnyReliability, Area, Belief as _, Label, Lines, Noise, Site, Tolerance};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use tests::ensemble::{expect, mean, median, quantile};
 use tests::{cases, is_long};
 
 const SIDE: f64 = 20.0;
@@ -174,28 +175,14 @@ fn a_line_is_known_as_by_a_dense_grid() {
         let [got, most] = [0, 1].map(|k| told.iter().map(|it| it[k]).sum::<f64>());
         assert!(got > least * most, "{told:?} bits");
     }
-    let [share, offset] = [&shares, &offsets].map(|it| Summary::of(it));
-    assert!(share.mean < 0.02 && share.p95 < 0.08, "{share:?}");
-    assert!(widths.len() >= 4 && offset.mean < 0.35 && offset.p95 < 1.1, "{offset:?}");
+    expect("shares, mean", mean(shares.iter().copied()), ..0.02);
+    expect("shares, 95 %", quantile(0.95, shares), ..0.08);
+    expect("offsets, mean", mean(offsets.iter().copied()), ..0.35);
+    expect("offsets, 95 %", quantile(0.95, offsets), ..1.1);
+    assert!(widths.len() >= 4, "{widths:?}");
     // Tails that few lines have make some of them much larger or smaller.
     let alike = widths.iter().filter(|it| (0.7..2.0).contains(*it)).count();
     assert!(alike * 10 >= widths.len() * 8, "{widths:?}");
-}
-
-/// The mean of some numbers, and what 95 % of them are below.
-#[derive(Debug)]
-struct Summary {
-    mean: f64,
-    p95: f64,
-}
-
-impl Summary {
-    fn of(numbers: &[f64]) -> Self {
-        let mut sorted = numbers.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let mean = numbers.iter().sum::<f64>() / numbers.len() as f64;
-        Self { mean, p95: sorted[sorted.len() * 19 / 20] }
-    }
 }
 
 /// The stated widths hold the truth as often as they say, or more often: of exact positions, of such that err, and of a
@@ -231,8 +218,7 @@ fn stated_widths_of_lines_hold_the_truth() {
             holds += u64::from(off <= waist.half_width(0.9));
             errors.push(off);
         }
-        errors.sort_by(f64::total_cmp);
-        let (share, median) = (holds as f64 / fields as f64, errors[errors.len() / 2]);
+        let (share, median) = (holds as f64 / fields as f64, median(errors));
         println!("{name}, {labels} labels: {share:.3} hold, {median:.4} m off");
         let slack = if is_long() { 0.0 } else { 0.03 };
         let fits = share >= least - slack && median < most;

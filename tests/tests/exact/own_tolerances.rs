@@ -16,6 +16,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
+use tests::ensemble::{self, median};
 
 /// The most that a position may be off, metres.
 const MOST: f64 = 0.8;
@@ -209,9 +210,7 @@ fn bits(mission: impl Fn(u64) -> Mission + Sync, tells: impl Fn(f64) -> f64 + Sy
         let planner = fly(&mission(number), &mut rng, errs, &tells, |_, _| {});
         planner.belief().information()
     };
-    let mut bits: Vec<f64> = (0..cases(30, 1_000)).into_par_iter().map(each).collect();
-    bits.sort_by(f64::total_cmp);
-    bits[bits.len() / 2]
+    median(ensemble::fly(cases(30, 1_000), each))
 }
 
 #[test]

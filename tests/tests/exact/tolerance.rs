@@ -13,8 +13,8 @@ use planner_core::{
     Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,
     StopReason, Tolerance, Workspace as _,
 };
-use rayon::prelude::*;
 use tests::cases;
+use tests::ensemble::{self, expect, mean, median, percent};
 use tests::twins::probit::{Probit, Told};
 
 /// A mission in a standard field with a robot that errs, and a planner that is told by how much.
@@ -48,7 +48,7 @@ fn the_truth_is_kept_and_missions_end_by_their_steps() {
                 assert!(holds, "field {number}: {algorithm:?} lost the truth");
                 (flown.ending != Ending::Steps).then_some(flown.ending)
             };
-            let early: Vec<_> = (0..count).into_par_iter().filter_map(each).collect();
+            let early = ensemble::fly_some(count, each);
             let errs = errors.position > 0.0;
             let is_told = |end: &Ending| {
                 algorithm == Algorithm::Lookahead && *end == Ending::Stopped(StopReason::Tolerance)
@@ -120,9 +120,9 @@ fn credible_sets_cover_what_they_state() {
                 let holds = members.any(|lines| mission.world.is_among(lines) == Some(true));
                 (set.probability, holds)
             };
-            let all: Vec<_> = (0..count).into_par_iter().map(each).collect();
-            let states = all.iter().map(|(states, _)| states).sum::<f64>() / count as f64;
-            let covers = all.iter().filter(|(_, holds)| *holds).count() as f64 / count as f64;
+            let all = ensemble::fly(count, each);
+            let states = mean(all.iter().map(|(states, _)| *states));
+            let covers = percent(&all, |(_, holds)| *holds) / 100.0;
             let most = 0.025 + 3.0 * (0.9_f64 * 0.1 / count as f64).sqrt();
             let is_right = (covers - states).abs() < most;
             assert!(is_right, "{algorithm:?}, {position} m: {covers} of {states}");
@@ -186,7 +186,7 @@ fn certain_labels_are_told_within_the_ball_alone() {
 }
 
 /// The paper's example with a robot that errs: the slope errors of the centre after 24 labels, or as many as are worth
-/// their way, in order, degrees.
+/// their way, degrees.
 fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
     let each = |seed| {
         let overrides =
@@ -214,9 +214,7 @@ fn paper(algorithm: Algorithm, errors: Errors) -> Vec<f64> {
             .or(last)
             .unwrap_or_else(|| panic!("seed {seed}: {labels} labels, then {:?}", flown.ending))
     };
-    let mut degrees: Vec<f64> = (0..cases(20, 300)).into_par_iter().map(each).collect();
-    degrees.sort_by(f64::total_cmp);
-    degrees
+    ensemble::fly(cases(20, 300), each)
 }
 
 #[test]
@@ -227,10 +225,7 @@ fn the_papers_example_is_as_near_as_positions_allow() {
         for (errors, most) in [(position, most), (motion, 0.35)] {
             for algorithm in [Algorithm::Cfc, Algorithm::Lookahead] {
                 let degrees = paper(algorithm, errors);
-                let median = degrees[degrees.len() / 2];
-                let nine_tenths = degrees[degrees.len() * 9 / 10];
-                println!("{algorithm:?}, {errors:?}: {median:.4}, 90 % {nine_tenths:.4} deg");
-                assert!(median <= most, "{algorithm:?}, {errors:?}: {median} deg");
+                expect(format!("{algorithm:?}, {errors:?}, degrees"), median(degrees), ..=most);
             }
         }
     }

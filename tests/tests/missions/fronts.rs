@@ -19,7 +19,6 @@ use planner_core::{
     Noise, Plan, Planner as _, PolygonArea, Pose, Sample, Site, Track, Unicycle, Workspace,
 };
 use rand::RngExt as _;
-use rand_chacha::ChaCha8Rng;
 use tests::ensemble::{self, expect, median, percent};
 use tests::vehicles::{boat, car};
 use tests::{cases, is_long};
@@ -38,22 +37,6 @@ fn noise(p: f64) -> Noise {
 /// A planner of a still front.
 fn planner<D: Dynamics, G: Workspace>((area, dynamics): (G, D), noise: Noise) -> Track<D, G> {
     Track::new(area, dynamics, Front::BENDING, noise).expect("room")
-}
-
-/// Follows a front for so many motions, inside an area; each pose is shown to `look`.
-fn go<D: Dynamics, G: Workspace + Copy>(
-    (world, p): (&TrueFront, f64),
-    (area, dynamics): (G, D),
-    (start, motions): (Pose, u32),
-    rng: &mut ChaCha8Rng,
-    mut look: impl FnMut(Pose),
-) -> Flown {
-    let planner = planner((area, dynamics), noise(p)).knowing(&world.given());
-    let course = Course { motions, steps: 1.0, p };
-    follow(world, planner, (course, start), rng, |_, from, to| {
-        assert!(area.contains(to.site) && area.lets_pass(&[from.site, to.site]));
-        look(to);
-    })
 }
 
 /// The distance of the map from the front: median and 95 %, metres; metres driven a metre of front; the share lost.
@@ -169,8 +152,11 @@ fn along<D: Dynamics>(dynamics: D, p: f64, number: u64) -> Flown {
     let area = PolygonArea::<4, 2>::new(hull, &outs).expect("an area");
     let heading = Heading::from_radians(world.angle).expect("an angle");
     let start = Pose { site: site(world.beside(0.0, 2.0)), heading };
-    let of = (area, dynamics);
-    go((&world, p), of, (start, MOTIONS), &mut rng, |_| ())
+    let planner = planner((area, dynamics), noise(p)).knowing(&world.given());
+    let course = Course { motions: MOTIONS, steps: 1.0, p };
+    follow(&world, planner, (course, start), &mut rng, |_, from, to| {
+        assert!(area.contains(to.site) && area.lets_pass(&[from.site, to.site]));
+    })
 }
 
 /// Cars go all round a bend of five radii of their turning circles and more, and all that they map lies in the area.
@@ -234,19 +220,6 @@ fn a_sensor_that_fails_while_a_front_is_followed_raises_an_alarm() {
         expect(format!("{what}, alarms before"), before, ..=5.0);
         expect(format!("{what}, noticed"), percent(&noticed, Option::is_some), least..);
     }
-}
-
-#[test]
-fn a_closed_front_is_noticed() {
-    ensemble::fly(cases(8, 60), |number| {
-        let mut rng = ensemble::rng(43, number);
-        let world = TrueFront::circle(20.0, &mut rng);
-        let of = (sea().expect("an area"), unicycle());
-        let start = world.start(&mut rng);
-        let flown = go((&world, 1.0), of, (start, MOTIONS), &mut rng, |_| ());
-        // The circle is 126 m long.
-        expect("closed after", flown.closed_after.expect("a whole round"), 110.0..160.0);
-    });
 }
 
 /// Where a front leaves the area, the robot drives to where it began and goes the other way, up to the border there. It
@@ -333,29 +306,6 @@ fn readings_on_the_way_help_and_positions_that_err_are_allowed_for() {
         expect(format!("{what}, covered"), percent(&found, |it| it.1), 90.0..);
         let most = if readings > 1 { 0.13 } else { 0.35 };
         expect(format!("{what}, off"), median(found.iter().map(|it| it.0)), ..most);
-    }
-}
-
-/// From nothing, in an area of 250 reaches, beside a front. Half of the robots face away from it.
-#[test]
-fn a_front_beside_the_start_is_found_in_a_large_area() {
-    let area = Area::metres([-200.0, -200.0], [300.0, 300.0]).expect("an area");
-    for (p, most) in [(1.0, 75.0), (0.9, 85.0)] {
-        let steps = ensemble::fly(20, |number| {
-            let mut rng = ensemble::rng(61, number);
-            let world = TrueFront::circle(120.0, &mut rng);
-            let mut planner = planner((area, unicycle()), noise(p));
-            let mut pose = Pose { site: site(world.beside(0.0, 2.0)), heading: Heading(0) };
-            let found = (1..=120).find(|_| {
-                let Plan::Move(next) = planner.plan(pose) else { return false };
-                pose = next.target;
-                let label = world.sensed(Point2::from(pose.site), 0.0, p, &mut rng);
-                planner.observe(pose, next.wants_label.then(|| label.into())).expect("a label");
-                planner.found().is_some()
-            });
-            found.map_or(f64::INFINITY, f64::from)
-        });
-        expect(format!("found after, p = {p}"), median(steps), ..most);
     }
 }
 

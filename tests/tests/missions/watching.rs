@@ -196,10 +196,3 @@ fn a_robot_that_watches_stays_and_sleeps() {
         assert!(labels > MOTIONS / 2, "{number}: {labels} labels");
     });
 }
-
-#[test]
-fn what_is_no_stretch_is_refused() {
-    for metres in [0.0, -1.0, f64::NAN, f64::INFINITY, 2e4] {
-        assert!(FrontStretch::metres(metres).is_err(), "{metres}");
-    }
-}

@@ -1,6 +1,6 @@
 //! The schema of a type, written down while values of it are read: names and order of fields and variants.
 
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::{self, Write as _};
 
@@ -38,8 +38,11 @@ pub(crate) struct Schema {
     types: BTreeMap<String, Type>,
     /// The type of the value that was read last.
     read: String,
-    /// The variant that was read last.
+    /// The variant that was read last, and those of the choices that are being read.
     variant: usize,
+    chosen: Vec<usize>,
+    /// The types of the parts of what is being read.
+    parts: Vec<Vec<String>>,
 }
 
 impl Schema {
@@ -151,32 +154,39 @@ pub(crate) fn read<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     of: D,
     schema: &RefCell<Schema>,
 ) -> Result<T, D::Error> {
-    T::deserialize(Traced { of, schema, field: "" })
+    T::deserialize(Traced { of, schema, field: "", names: &[] })
 }
 
-/// A reader, a visitor or a seed that writes down what passes through it.
+/// A reader, a visitor, a seed or what gives access to parts, which writes down what passes through it.
 struct Traced<'a, T> {
     of: T,
     schema: &'a RefCell<Schema>,
     /// The field that is read.
     field: &'static str,
+    /// The fields of the struct that is read, or the variants of the choice.
+    names: &'static [&'static str],
 }
 
 impl<'a, T> Traced<'a, T> {
     fn with<U>(&self, of: U) -> Traced<'a, U> {
-        Traced { of, schema: self.schema, field: self.field }
+        Traced { of, schema: self.schema, field: self.field, names: self.names }
+    }
+
+    /// The same of what has no name of its own.
+    fn nameless<U>(&self, of: U) -> Traced<'a, U> {
+        Traced { of, schema: self.schema, field: "", names: &[] }
     }
 
     fn is(&self, name: &str) {
         name.clone_into(&mut self.schema.borrow_mut().read);
     }
-}
 
-/// A visitor of parts: fields by their names, or those of a tuple or a list.
-struct Parts<'a, V> {
-    of: Traced<'a, V>,
-    names: &'static [&'static str],
-    types: &'a RefCell<Vec<String>>,
+    /// Reads what has parts, and returns their types.
+    fn parts<R, E>(&self, read: impl FnOnce() -> Result<R, E>) -> Result<(R, Vec<String>), E> {
+        self.schema.borrow_mut().parts.push(Vec::new());
+        let value = read()?;
+        Ok((value, self.schema.borrow_mut().parts.pop().unwrap_or_default()))
+    }
 }
 
 macro_rules! plain {
@@ -194,20 +204,6 @@ macro_rules! never {
             unreachable!("{}: {}", self.field, stringify!($read))
         })*
     };
-}
-
-impl<'de, D: Deserializer<'de>> Traced<'_, D> {
-    fn parts<V: Visitor<'de>>(
-        self,
-        names: &'static [&'static str],
-        visitor: V,
-        read: impl FnOnce(D, Parts<'_, V>) -> Result<V::Value, D::Error>,
-    ) -> Result<(V::Value, Vec<String>), D::Error> {
-        let types = RefCell::default();
-        let parts = Parts { of: self.with(visitor), names, types: &types };
-        let value = read(self.of, parts)?;
-        Ok((value, types.into_inner()))
-    }
 }
 
 impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
@@ -249,11 +245,12 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
     }
 
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        let (schema, field) = (self.schema, self.field);
-        let (value, types) = self.parts(&[], visitor, |of, parts| of.deserialize_seq(parts))?;
-        let most = LISTS.iter().find(|(name, _)| *name == field).expect(field).1;
+        let inner = Traced { names: &[], ..self.with(visitor) };
+        let told = self.with(());
+        let (value, types) = told.parts(|| self.of.deserialize_seq(inner))?;
+        let most = LISTS.iter().find(|(name, _)| *name == told.field).expect(told.field).1;
         let of = types.first().map_or(UNKNOWN, String::as_str);
-        schema.borrow_mut().read = format!("list {most} {of}");
+        told.is(&format!("list {most} {of}"));
         Ok(value)
     }
 
@@ -262,15 +259,13 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
         len: usize,
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        let (schema, field) = (self.schema, self.field);
         // Its own tuples have no name.
-        let inner = Traced { field: "", ..self };
-        let (value, types) =
-            inner.parts(&[], visitor, |of, parts| of.deserialize_tuple(len, parts))?;
+        let (told, inner) = (self.with(()), self.nameless(visitor));
+        let (value, types) = told.parts(|| self.of.deserialize_tuple(len, inner))?;
         let of = format!("[{}]", types.join(" "));
-        match TUPLES.iter().find(|(_, fields)| fields.contains(&field)) {
-            Some((name, _)) => schema.borrow_mut().define(name, Type::Alias(of)),
-            None => schema.borrow_mut().read = of,
+        match TUPLES.iter().find(|(_, fields)| fields.contains(&told.field)) {
+            Some((name, _)) => told.schema.borrow_mut().define(name, Type::Alias(of)),
+            None => told.is(&of),
         }
         Ok(value)
     }
@@ -310,28 +305,27 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
     fn deserialize_struct<V: Visitor<'de>>(
         self,
         name: &'static str,
-        fields: &'static [&'static str],
+        names: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        let schema = self.schema;
-        let (value, types) =
-            self.parts(fields, visitor, |of, parts| of.deserialize_struct(name, fields, parts))?;
-        schema.borrow_mut().define(name, Type::Struct(entries(fields, types)));
+        let (told, inner) = (self.with(()), Traced { names, ..self.with(visitor) });
+        let (value, types) = told.parts(|| self.of.deserialize_struct(name, names, inner))?;
+        told.schema.borrow_mut().define(name, Type::Struct(entries(names, types)));
         Ok(value)
     }
 
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         name: &'static str,
-        variants: &'static [&'static str],
+        names: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, D::Error> {
-        let (schema, chosen) = (self.schema, Cell::new(0));
-        let visitor = Choosing { of: self.with(visitor), variants, chosen: &chosen };
-        let value = self.of.deserialize_enum(name, variants, visitor)?;
-        let read = schema.borrow().read.clone();
-        let of = (0..).map(|at| if at == chosen.get() { read.clone() } else { UNKNOWN.into() });
-        schema.borrow_mut().define(name, Type::Choice(entries(variants, of)));
+        let (schema, inner) = (self.schema, Traced { names, ..self.with(visitor) });
+        let value = self.of.deserialize_enum(name, names, inner)?;
+        let mut schema = schema.borrow_mut();
+        let (chosen, read) = (schema.chosen.pop(), schema.read.clone());
+        let of = (0..).map(|at| if Some(at) == chosen { read.clone() } else { UNKNOWN.into() });
+        schema.define(name, Type::Choice(entries(names, of)));
         Ok(value)
     }
 }
@@ -340,7 +334,6 @@ fn entries(names: &[&str], types: impl IntoIterator<Item = String>) -> Vec<[Stri
     names.iter().zip(types).map(|(name, of)| [(*name).to_owned(), of]).collect()
 }
 
-/// Of an option, a newtype and an index.
 impl<'de, V: Visitor<'de>> Visitor<'de> for Traced<'_, V> {
     type Value = V::Value;
 
@@ -367,6 +360,16 @@ impl<'de, V: Visitor<'de>> Visitor<'de> for Traced<'_, V> {
         self.schema.borrow_mut().variant = index as usize;
         self.of.visit_u32(index)
     }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, parts: A) -> Result<V::Value, A::Error> {
+        let parts = self.with(parts);
+        self.of.visit_seq(parts)
+    }
+
+    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<V::Value, A::Error> {
+        let access = self.with(access);
+        self.of.visit_enum(access)
+    }
 }
 
 impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Traced<'_, S> {
@@ -378,106 +381,76 @@ impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Traced<'_, S> {
     }
 }
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Parts<'_, V> {
-    type Value = V::Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.of.of.expecting(f)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, parts: A) -> Result<V::Value, A::Error> {
-        let of = self.of.with(parts);
-        self.of.of.visit_seq(Parts { of, names: self.names, types: self.types })
-    }
-}
-
-impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Parts<'_, A> {
+impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Traced<'_, A> {
     type Error = A::Error;
 
     fn next_element_seed<S: DeserializeSeed<'de>>(
         &mut self,
         seed: S,
     ) -> Result<Option<S::Value>, A::Error> {
-        let at = self.types.borrow().len();
+        let at = self.schema.borrow().parts.last().map_or(0, Vec::len);
         // Parts of a list go by the name of the list.
-        let field = self.names.get(at).copied().unwrap_or(self.of.field);
-        let seed = Traced { of: seed, schema: self.of.schema, field };
-        let value = self.of.of.next_element_seed(seed)?;
+        let field = self.names.get(at).copied().unwrap_or(self.field);
+        let seed = Traced { field, ..self.nameless(seed) };
+        let value = self.of.next_element_seed(seed)?;
         if value.is_some() {
-            self.types.borrow_mut().push(self.of.schema.borrow().read.clone());
+            let mut schema = self.schema.borrow_mut();
+            let read = schema.read.clone();
+            schema.parts.last_mut().expect("what has parts").push(read);
         }
         Ok(value)
     }
 
     fn size_hint(&self) -> Option<usize> {
-        self.of.of.size_hint()
+        self.of.size_hint()
     }
 }
 
-/// A visitor of a variant, or what gives access to it.
-struct Choosing<'a, T> {
-    of: Traced<'a, T>,
-    variants: &'static [&'static str],
-    chosen: &'a Cell<usize>,
-}
-
-impl<'de, V: Visitor<'de>> Visitor<'de> for Choosing<'_, V> {
-    type Value = V::Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.of.of.expecting(f)
-    }
-
-    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<V::Value, A::Error> {
-        let of = self.of.with(access);
-        self.of.of.visit_enum(Choosing { of, variants: self.variants, chosen: self.chosen })
-    }
-}
-
-impl<'de, 'a, A: EnumAccess<'de>> EnumAccess<'de> for Choosing<'a, A> {
+impl<'de, 'a, A: EnumAccess<'de>> EnumAccess<'de> for Traced<'a, A> {
     type Error = A::Error;
-    type Variant = Choosing<'a, A::Variant>;
+    type Variant = Traced<'a, A::Variant>;
 
     fn variant_seed<S: DeserializeSeed<'de>>(
         self,
         seed: S,
     ) -> Result<(S::Value, Self::Variant), A::Error> {
-        let Self { of: Traced { of, schema, field }, variants, chosen } = self;
-        let (value, of) = of.variant_seed(Traced { of: seed, schema, field })?;
-        chosen.set(schema.borrow().variant);
-        schema.borrow_mut().read = String::new();
-        Ok((value, Choosing { of: Traced { of, schema, field }, variants, chosen }))
+        let (told, seed) = (self.with(()), self.nameless(seed));
+        let (value, of) = self.of.variant_seed(seed)?;
+        let mut schema = told.schema.borrow_mut();
+        let variant = schema.variant;
+        schema.chosen.push(variant);
+        schema.read = String::new();
+        Ok((value, told.with(of)))
     }
 }
 
-impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Choosing<'_, A> {
+impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Traced<'_, A> {
     type Error = A::Error;
 
     fn unit_variant(self) -> Result<(), A::Error> {
-        self.of.of.unit_variant()
+        self.of.unit_variant()
     }
 
     fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, A::Error> {
-        let seed = Traced { of: seed, schema: self.of.schema, field: "" };
-        self.of.of.newtype_variant_seed(seed)
+        let seed = self.nameless(seed);
+        self.of.newtype_variant_seed(seed)
     }
 
     fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, A::Error> {
-        unreachable!("{:?}", self.variants)
+        unreachable!("{:?}", self.names)
     }
 
     fn struct_variant<V: Visitor<'de>>(
         self,
-        fields: &'static [&'static str],
+        names: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, A::Error> {
-        let types = RefCell::default();
-        let schema = self.of.schema;
-        let parts = Parts { of: self.of.with(visitor), names: fields, types: &types };
-        let value = self.of.of.struct_variant(fields, parts)?;
+        let (told, inner) = (self.with(()), Traced { names, ..self.with(visitor) });
+        let (value, types) = told.parts(|| self.of.struct_variant(names, inner))?;
         // What a variant has goes by the variant's name.
-        let name = self.variants[self.chosen.get()];
-        schema.borrow_mut().define(name, Type::Struct(entries(fields, types.into_inner())));
+        let mut schema = told.schema.borrow_mut();
+        let name = told.names[*schema.chosen.last().expect("a variant")];
+        schema.define(name, Type::Struct(entries(names, types)));
         Ok(value)
     }
 }

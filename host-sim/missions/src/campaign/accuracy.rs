@@ -7,7 +7,7 @@ use planner_core::dynamics::Dynamics as _;
 use serde::Serialize;
 use serde_with::skip_serializing_none;
 
-use crate::campaign::course::Tally;
+use crate::campaign::course::Course;
 use crate::campaign::ensemble::{Campaign, Measure, Measured, Progress};
 use crate::campaign::spread::{Spread, Stages, mean};
 use crate::mission::algorithm::Algorithm;
@@ -158,15 +158,23 @@ impl Summary {
         campaign: &Campaign,
         rows: impl IntoIterator<Item = Result<Measured<Checkpoint>>>,
     ) -> Result<Self> {
-        let (mut stages, mut tally) = (Stages::<Checkpoint>::new(), Tally::default());
+        let (mut stages, mut whole) = (Stages::<Checkpoint>::new(), Vec::<Course>::new());
         for row in rows {
             let Measured { checkpoint, course } = row?;
             if checkpoint.step == campaign.length() {
-                tally.add(&course);
+                whole.push(course);
             }
             stages.entry(checkpoint.step).or_default().push(checkpoint);
         }
-        let Tally { ends, recoveries, plans, examined, most_examined } = tally;
+        let (mut ends, mut recoveries) = (BTreeMap::new(), BTreeMap::new());
+        for course in &whole {
+            *ends.entry(course.ended.clone()).or_default() += 1;
+            for (rung, times) in course.rungs().into_iter().filter(|(_, times)| *times > 0) {
+                *recoveries.entry(rung).or_default() += times;
+            }
+        }
+        let plans = whole.iter().map(|it| it.plans).sum();
+        let examined = whole.iter().map(|it| it.examined).sum::<u64>();
         Ok(Self {
             algorithm: campaign.algorithm,
             fields: campaign.fields,
@@ -178,7 +186,7 @@ impl Summary {
             recoveries,
             plans,
             mean_examined: examined as f64 / plans as f64,
-            most_examined,
+            most_examined: whole.iter().map(|it| it.most_examined).max().unwrap_or(0),
             actions: campaign.vehicle.grid().actions(),
         })
     }

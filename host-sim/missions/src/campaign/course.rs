@@ -1,7 +1,5 @@
 //! How missions went: what was planned, how often the recovery ladder was needed, and why they ended.
 
-use std::collections::BTreeMap;
-
 use planner_core::Step;
 use planner_core::search::recovery::Recovery;
 use serde::Serialize;
@@ -27,21 +25,6 @@ pub struct Course {
     pub transit: u64,
 }
 
-/// How the missions of a campaign went.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Tally {
-    /// How many ended for which reason.
-    pub(crate) ends: BTreeMap<String, u64>,
-    /// How many steps climbed to which rung of the recovery ladder.
-    pub(crate) recoveries: BTreeMap<&'static str, u64>,
-    /// Motions planned.
-    pub(crate) plans: u64,
-    /// Actions whose position they looked at.
-    pub(crate) examined: u64,
-    /// The most that one plan looked at.
-    pub(crate) most_examined: u32,
-}
-
 impl Course {
     /// One more step.
     pub(crate) fn count(&mut self, step: &Step) {
@@ -55,25 +38,13 @@ impl Course {
             None => {}
         }
     }
-}
 
-impl Tally {
-    /// One more mission, by its course to the end.
-    pub(crate) fn add(&mut self, course: &Course) {
-        let Course { ended, plans, examined, most_examined, undirected, reorient, transit } =
-            course;
-        *self.ends.entry(ended.clone()).or_default() += 1;
-        for (rung, times) in [
-            (Recovery::Undirected, undirected),
-            (Recovery::Reorient, reorient),
-            (Recovery::Transit, transit),
-        ] {
-            if *times > 0 {
-                *self.recoveries.entry(recovery_name(rung)).or_default() += times;
-            }
-        }
-        self.plans += plans;
-        self.examined += examined;
-        self.most_examined = self.most_examined.max(*most_examined);
+    /// How often it climbed to each rung of the recovery ladder.
+    pub(crate) fn rungs(&self) -> [(&'static str, u64); 3] {
+        [
+            (recovery_name(Recovery::Undirected), self.undirected),
+            (recovery_name(Recovery::Reorient), self.reorient),
+            (recovery_name(Recovery::Transit), self.transit),
+        ]
     }
 }

@@ -8,6 +8,7 @@ pub mod drawn;
 pub mod ensemble;
 pub mod field_record;
 pub mod fronts;
+mod kinds;
 pub mod patches;
 pub mod rows;
 pub mod spread;

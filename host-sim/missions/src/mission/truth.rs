@@ -30,7 +30,7 @@ const FURTHEST: f64 = 1e6;
 const MOST_LENGTHS: f64 = 1_000.0;
 
 /// The boundary: a straight line, or another kind by its key.
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TruthTable {
     /// A line `z = slope x + intercept`, +1 above
@@ -176,23 +176,10 @@ impl TruthTable {
             self.line()?
         } else {
             let [slope, intercept] = [self.slope, self.intercept].map(Option::unwrap_or_default);
-            Self { slope: Some(slope), intercept: Some(intercept), ..Self::NONE }.line()?
+            Self { slope: Some(slope), intercept: Some(intercept), ..Self::default() }.line()?
         };
         Ok(Sine { base, height, length, phase })
     }
-
-    const NONE: Self = Self {
-        slope: None,
-        intercept: None,
-        line: None,
-        circle: None,
-        sine: None,
-        polyline: None,
-        coast: None,
-        raster: None,
-        threshold: None,
-        drift: None,
-    };
 }
 
 fn circle([x, z]: [f64; 2], radius: f64) -> Result<Circle> {

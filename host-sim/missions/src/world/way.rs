@@ -80,23 +80,4 @@ mod tests {
         assert_eq!(parts(&[at(-1.0, 5.0), at(5.0, 5.0)], &area), Vec::<Way>::new());
         assert_eq!(parts(&[at(-1.0, 3.5), at(1.0, 5.5)], &area), Vec::<Way>::new());
     }
-
-    /// The distance is the least of those from many places on the way.
-    #[test]
-    fn distances_are_those_of_the_nearest_place() {
-        let ways = [
-            vec![at(0.0, 0.0), at(3.0, 1.0), at(3.0, 1.0), at(4.0, -2.0)],
-            vec![at(-2.0, 2.0), at(-1.0, 2.0)],
-        ];
-        for k in 0..200 {
-            let place = at(-4.0 + 0.05 * f64::from(k), -3.0 + 0.37 * f64::from(k % 20));
-            let on_it = ways.iter().flat_map(|way| way.windows(2)).flat_map(|piece| {
-                (0..=1000).map(move |n| piece[0] + (piece[1] - piece[0]) * (f64::from(n) / 1000.0))
-            });
-            let least = on_it.map(|it| (place - it).norm()).fold(f64::INFINITY, f64::min);
-            let got = distance(place, &ways);
-            assert!(got <= least + 1e-12 && least - got < 4e-3, "{place}: {got} for {least}");
-        }
-        assert!(distance(at(0.0, 0.0), &[]).is_infinite());
-    }
 }

@@ -2,15 +2,4 @@
 #![forbid(unsafe_code)]
 //! Algorithm 1 and look-ahead with 16 samples, for labels that are true.
 
-#[cfg(target_os = "none")]
-#[bare_core::entry]
-fn main() -> ! {
-    use planner_core::link::station::TrueLabels;
-    use planner_core::{Area, SlopeWithin, Unicycle};
-
-    bare_core::fly::<TrueLabels<16, SlopeWithin>, Unicycle, Area>()
-}
-
-/// On a host there is nothing to run.
-#[cfg(not(target_os = "none"))]
-fn main() {}
+bare_core::flies!(TrueLabels<16, SlopeWithin>, Unicycle, Area);

@@ -2,15 +2,4 @@
 #![forbid(unsafe_code)]
 //! Both algorithms with 32 labels beside 4 given samples.
 
-#[cfg(target_os = "none")]
-#[bare_core::entry]
-fn main() -> ! {
-    use planner_core::link::station::AllLabels;
-    use planner_core::{Area, Unicycle};
-
-    bare_core::fly::<AllLabels<36, 36, 529>, Unicycle, Area>()
-}
-
-/// On a host there is nothing to run.
-#[cfg(not(target_os = "none"))]
-fn main() {}
+bare_core::flies!(AllLabels<36, 36, 529>, Unicycle, Area);

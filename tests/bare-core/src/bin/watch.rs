@@ -2,15 +2,4 @@
 #![forbid(unsafe_code)]
 //! The guard of a stretch of a front.
 
-#[cfg(target_os = "none")]
-#[bare_core::entry]
-fn main() -> ! {
-    use planner_core::link::station::Guards;
-    use planner_core::{Area, Unicycle};
-
-    bare_core::fly::<Guards, Unicycle, Area>()
-}
-
-/// On a host there is nothing to run.
-#[cfg(not(target_os = "none"))]
-fn main() {}
+bare_core::flies!(Guards, Unicycle, Area);

@@ -3,21 +3,19 @@
 use std::f64::consts::FRAC_PI_2;
 
 use anyhow::{Error, Result};
-use indicatif::ProgressBar;
 use planner_core::dynamics::Dynamics;
 use planner_core::{Area, Front, Noise, Planner as _, Track, Unicycle, Workspace};
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 
 use crate::campaign::fronts::following::{Course, Flown, Follower, REACH, Vertex, follow};
 use crate::campaign::fronts::kinds::{KINDS, Kind};
 use crate::campaign::fronts::summary::{Row, Summary};
 use crate::campaign::fronts::who::Who;
+use crate::campaign::kinds::rows;
 use crate::mission::baseline::Baseline;
 use crate::mission::crossings::Crossings;
 use crate::mission::steering::{BANG_BANG, Steered, ZIGZAG};
-use crate::output::notes::progress;
 
 /// How long a mission is, in steps: 400 m.
 pub const STEPS: f64 = 200.0;
@@ -45,31 +43,17 @@ impl Fronts {
     /// # Errors
     /// When a tracker cannot be told so.
     pub fn run(&self) -> Result<Summary> {
-        let rows = KINDS.iter().flat_map(|kind| self.p.iter().map(move |p| (kind, *p)));
-        let rows: Vec<_> = rows.collect();
-        let bar = progress(self.missions * rows.len() as u64, "missions")?;
-        let bar = bar.with_message(self.who.title());
-        let rows: Result<_> = rows.into_iter().map(|(kind, p)| self.row(kind, p, &bar)).collect();
-        bar.finish_and_clear();
+        let fly = |kind: &Kind, p, number| self.mission(kind, p, number);
+        let row = |kind: &Kind, p, flown: &[Flown]| Row::of(kind.name, p, flown);
+        let of = (&KINDS[..], &self.p[..], self.missions);
         Ok(Summary {
             algorithm: self.who,
             missions: self.missions,
             seed: self.seed,
             reach: self.reach(),
             told_speed: self.who.is_told_speed().then_some(self.told_speed),
-            rows: rows?,
+            rows: rows(of, self.who.title(), fly, row)?,
         })
-    }
-
-    /// The missions along one kind of front.
-    fn row(&self, kind: &Kind, p: f64, bar: &ProgressBar) -> Result<Row> {
-        let mission = |number| {
-            let flown = self.mission(kind, p, number);
-            bar.inc(1);
-            flown
-        };
-        let flown = (0..self.missions).into_par_iter().map(mission).collect::<Result<Vec<_>>>()?;
-        Ok(Row::of(kind.name, p, &flown))
     }
 
     /// The longest motion, metres.

@@ -3,19 +3,17 @@
 use std::f64::consts::TAU;
 
 use anyhow::{Error, Result};
-use indicatif::ProgressBar;
 use nalgebra::Point2;
 use planner_core::{
     Front, Heading, Label, Noise, Plan, Planner as _, Pose, Seeking, Site, StopReason, Track,
 };
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::campaign::kinds::rows;
 use crate::campaign::patches::kinds::{KINDS, Kind};
 use crate::campaign::spread::{rank, sorted};
-use crate::output::notes::progress;
 
 /// A front that is said to be further away than so many widths is found falsely.
 const FALSE: f64 = 2.0;
@@ -80,22 +78,9 @@ impl Patches {
     /// # Errors
     /// When a planner cannot be told so.
     pub fn run(&self) -> Result<Vec<Row>> {
-        let rows: Vec<_> =
-            KINDS.iter().flat_map(|kind| self.p.iter().map(move |p| (kind, *p))).collect();
-        let bar = progress(self.missions * rows.len() as u64, "missions")?;
-        let rows = rows.into_iter().map(|(kind, p)| self.row(kind, p, &bar)).collect();
-        bar.finish_and_clear();
-        rows
-    }
-
-    fn row(&self, kind: &Kind, p: f64, bar: &ProgressBar) -> Result<Row> {
-        let mission = |number| {
-            let flown = self.mission(kind, p, number);
-            bar.inc(1);
-            flown
-        };
-        let flown = (0..self.missions).into_par_iter().map(mission).collect::<Result<Vec<_>>>()?;
-        Ok(Row::of(kind.name, p, &flown))
+        let fly = |kind: &Kind, p, number| self.mission(kind, p, number);
+        let row = |kind: &Kind, p, flown: &[Flown]| Row::of(kind.name, p, flown);
+        rows((&KINDS, &self.p, self.missions), "", fly, row)
     }
 
     /// The mission with this number.
