@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 
 use anyhow::bail;
 use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use crate::mission::wording::{expected, in_radians};
@@ -49,8 +49,6 @@ pub fn no_angle<T>(field: &str, radians: f64) -> anyhow::Result<T> {
 pub(crate) struct Table<T>(pub(crate) T);
 
 /// An array of this many numbers.
-#[derive(Deserialize)]
-#[serde(try_from = "Vec<f64>")]
 pub(crate) struct Numbers<const N: usize>(pub(crate) [f64; N]);
 
 impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
@@ -73,12 +71,30 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for TableVisitor<T> {
     }
 }
 
-impl<const N: usize> TryFrom<Vec<f64>> for Numbers<N> {
-    type Error = String;
+impl<'de, const N: usize> Deserialize<'de> for Numbers<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(NumbersVisitor).map(Self)
+    }
+}
 
-    fn try_from(numbers: Vec<f64>) -> Result<Self, String> {
-        let length =
-            |it: Vec<f64>| format!("invalid length {}, expected an array of {N} numbers", it.len());
-        numbers.try_into().map(Self).map_err(length)
+struct NumbersVisitor<const N: usize>;
+
+impl<'de, const N: usize> Visitor<'de> for NumbersVisitor<N> {
+    type Value = [f64; N];
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "an array of {N} numbers")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut elements: A) -> Result<[f64; N], A::Error> {
+        let mut numbers = [0.0; N];
+        for (i, number) in numbers.iter_mut().enumerate() {
+            *number = elements.next_element()?.ok_or_else(|| Error::invalid_length(i, &self))?;
+        }
+        let mut count = N;
+        while elements.next_element::<IgnoredAny>()?.is_some() {
+            count += 1;
+        }
+        if count > N { Err(Error::invalid_length(count, &self)) } else { Ok(numbers) }
     }
 }
