@@ -30,8 +30,7 @@ impl Ground {
     /// The ground of a mission.
     pub fn of_mission(mission: &Mission) -> Self {
         let rings = mission.lake.iter().flat_map(|it| it.polygons.iter().flatten());
-        let shores = rings.map(|ring| ring.iter().map(|at| [at.x, at.y]).collect()).collect();
-        Self { shores, ..Self::of(&mission.config.area) }
+        Self { shores: rings.cloned().collect(), ..Self::of(&mission.config.area) }
     }
 
     /// The ground of an area.
