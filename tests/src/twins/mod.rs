@@ -3,4 +3,5 @@
 pub mod brute;
 pub mod exact_mean;
 pub mod joint;
+pub mod ladder;
 pub mod probit;
