@@ -62,37 +62,3 @@ fn false_alarms() {
     }
     assert!(100 * refused.len() <= files, "{refused:#?}");
 }
-
-/// How large gains become without a reason.
-#[test]
-fn gains() {
-    use planner_core::{Label, Sample};
-    let mut rng =
-        ChaCha8Rng::seed_from_u64(env::var("SEED").map_or(77, |it| it.parse().expect("a number")));
-    for file in 0..20_000 {
-        let q = [0.004, 0.01, 0.03, 0.06, 0.1, 0.2, 0.3][file % 7];
-        let sigma = if file % 14 < 7 { 0.0 } else { 0.15 };
-        let text = straight(&mut rng, q, sigma);
-        let all: Vec<_> = text
-            .lines()
-            .skip(1)
-            .map(|line| {
-                let v: Vec<f64> = line.split(',').map(|it| it.parse().expect("a number")).collect();
-                let label = if v[2] > 0.0 { Label::Positive } else { Label::Negative };
-                Sample::at([v[0], v[1]], label).expect("near")
-            })
-            .collect();
-        println!("#null {q} {sigma}");
-        let read: Vec<_> = all.iter().copied().zip(0..).collect();
-        let line = crate::fitting::fewest::Fewest::of(&all).expect("a line").line;
-        let question = crate::fitting::explanation::Question {
-            given: &[],
-            read: &read,
-            p: Some(1.0 - q),
-            tolerance: 3.0 * sigma,
-            line: &line,
-        };
-        let it = crate::fitting::explanation::Explanation::of(&question);
-        println!("={} {:?}", it.verdict(), it);
-    }
-}
