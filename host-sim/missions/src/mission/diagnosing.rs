@@ -12,6 +12,9 @@ use crate::mission::diagnosis::{DiagnosisRecord, RefutingRecord};
 use crate::mission::read_out::ReadOut;
 use crate::mission::results::{AlarmRecord, Ending, StepResult};
 
+/// A bend or a drift may be the cause if the two have this share.
+const POSSIBLE: f64 = 0.1;
+
 /// A label of a mission, and the step that read it.
 #[derive(Clone, Copy)]
 struct Taken {
@@ -78,6 +81,9 @@ impl DiagnosisRecord {
             (Cause::Line, _) if is_noisy => Cause::Unclear,
             (cause, _) => cause,
         };
+        let of = |cause| explanation.shares.get(&cause).copied().unwrap_or_default();
+        let may_be_off = is_noisy || of(Cause::Bend) + of(Cause::Drift) >= POSSIBLE;
+        let covering = explanation.tolerance.filter(|metres| may_be_off && *metres > 0.0);
         let rounded = |share: f64| (1e3 * share).round() / 1e3;
         let shares = explanation.shares.into_iter().map(|(cause, it)| (cause, rounded(it)));
         Some(Self {
@@ -89,7 +95,7 @@ impl DiagnosisRecord {
             steps: steps.collect(),
             cause,
             shares: shares.collect(),
-            tolerance: explanation.tolerance.filter(|metres| *metres > 0.0).map(rounded_up),
+            tolerance: covering.map(rounded_up),
         })
     }
 }

@@ -30,9 +30,6 @@ const SURE: f64 = 0.85;
 /// With what probability a tolerance is to cover a bend or a drift.
 const COVERING: f64 = 0.9;
 
-/// A bend or a drift may be the cause if the two have this share.
-const POSSIBLE: f64 = 0.1;
-
 /// How far a bend or a drift may reach, as shares of the ground's size: the least and the greatest.
 const REACHES: [f64; 2] = [0.001, 0.3];
 
@@ -59,7 +56,9 @@ impl Question<'_> {
         shares.extend(self.faults(&samples));
         let all: f64 = shares.values().sum();
         if all > 0.0 {
-            shares.values_mut().for_each(|share| *share /= all);
+            for share in shares.values_mut() {
+                *share /= all;
+            }
         }
         let sure = shares.iter().find(|(_, share)| **share >= SURE);
         let cause = match sure {
@@ -69,7 +68,6 @@ impl Question<'_> {
             }
             None => Cause::Unclear,
         };
-        let may_be_off = shares[&Cause::Bend] + shares[&Cause::Drift] >= POSSIBLE;
         // How far the boundary is from a straight, still line, with its chance.
         let mut off = [bends, drifts].concat();
         off.sort_by(|p, q| p.0.total_cmp(&q.0));
@@ -78,7 +76,7 @@ impl Question<'_> {
             missing -= share;
             missing <= 0.0
         });
-        let tolerance = covering.filter(|_| may_be_off).map(|(metres, _)| *metres);
+        let tolerance = covering.filter(|_| total(&off) > 0.0).map(|(metres, _)| *metres);
         Explanation { cause, shares, tolerance, ..Explanation::agreeing(samples.len()) }
     }
 

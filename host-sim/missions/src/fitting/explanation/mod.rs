@@ -74,7 +74,7 @@ pub struct Explanation {
     pub cause: Cause,
     /// Of labels that are true: the probability of each cause, if all are alike beforehand.
     pub shares: BTreeMap<Cause, f64>,
-    /// The tolerance that covers a bend or a drift, if it may be one, metres.
+    /// The tolerance that covers a bend or a drift, if it is one, metres.
     pub tolerance: Option<f64>,
     /// More of the cause, of labels that may be wrong.
     pub found: Option<Found>,
