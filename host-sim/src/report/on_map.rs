@@ -37,7 +37,7 @@ pub(crate) fn geojson(recording: &Recording) -> Result<String> {
     let read = results
         .steps
         .iter()
-        .filter_map(|step| Some((step.step, [step.pose.x, step.pose.z], step.label?.into())));
+        .filter_map(|step| Some((step.step, [step.pose.x, step.pose.z], step.label?)));
     for (step, at, label) in given.chain(read) {
         let told = json!({ "kind": "sample", "label": label, "step": step });
         features.push(feature(GeometryValue::new_point(degrees(at)?), told));

@@ -61,11 +61,11 @@ impl Ground {
 
     /// How far a point is from where the robot must not be; negative there.
     pub fn margin(&self, p: Point) -> f64 {
-        self.depth(p).min(self.clearance(p)).min(self.from_shore(p))
+        self.depth(p).min(self.clearance(p)).min(self.off_shore(p))
     }
 
     /// How far from the shore a point lies; negative on land.
-    fn from_shore(&self, p: Point) -> f64 {
+    fn off_shore(&self, p: Point) -> f64 {
         let sides = || self.shores.iter().flat_map(|ring| edges(ring));
         let is_beyond = |(a, b): &(Point, Point)| {
             (a[1] > p[1]) != (b[1] > p[1])

@@ -48,12 +48,12 @@ impl Lake {
     ///
     /// # Errors
     /// Names the file, what was found and what was expected.
-    pub(crate) fn read(path: &Path, name: &str, crs: Option<Crs>, cells: u16) -> Result<Self> {
+    pub(crate) fn read(path: &Path, name: &str, crs: Option<&Crs>, cells: u16) -> Result<Self> {
         let text = fs::read(path).map_err(|error| anyhow!("{name}: {error}"))?;
         let found: Vec<Vec<Vec<[f64; 2]>>> = polygons(name, &text, crs.is_none())?;
         let all: Vec<_> = found.iter().flatten().flatten().copied().collect();
         let is_geographic = crs.is_none();
-        let frame = Frame::of(&all, is_geographic, None, crs.as_ref())
+        let frame = Frame::of(&all, is_geographic, None, crs)
             .map_err(|error| anyhow!("{name}: {error}"))?;
         let place = |at: &[f64; 2]| Ok(Point2::from(frame.site(*at)?));
         let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(place).collect::<Result<Ring>>();
@@ -179,6 +179,9 @@ fn area(rings: &[Ring]) -> f64 {
     of(border) - holes.iter().map(of).sum::<f64>()
 }
 
+/// Sides are somewhat wider than they are, cells, so that rounding closes a cell rather than opens one.
+const DUST: f64 = 1e-6;
+
 /// Cells by rows, from the least coordinates on.
 struct Grid {
     from: Point2<f64>,
@@ -203,8 +206,6 @@ impl Grid {
                 let part = if high.y > low.y { (z - low.y) / (high.y - low.y) } else { 0.0 };
                 low.x + part * (high.x - low.x)
             };
-            // Somewhat wider than it is, so that rounding closes a cell rather than opens one.
-            const DUST: f64 = 1e-6;
             let clamp = |it: f64, count: usize| (it.floor().max(0.0) as usize).min(count - 1);
             for row in clamp(low.y - DUST, rows)..=clamp(high.y + DUST, rows) {
                 let z = row as f64;

@@ -427,30 +427,35 @@ pub fn check_readings(field: &str, readings: u32) -> Result<()> {
     checked(field, readings, (1..=MOST_READINGS).contains(&readings)).map(drop)
 }
 
+/// Whether a planner copes with a fan.
+fn check_fan(algorithm: Algorithm, grid: Grid) -> Result<()> {
+    if algorithm.copes_with(grid) {
+        return Ok(());
+    }
+    let found = format!("\"fine\" with algorithm {}", algorithm.name());
+    wrong("fan", found, "\"paper\", as it tries every action")
+}
+
 fn mission(file: &mut File, folder: &Path, overrides: Overrides) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
     let grid = file.fan.map_or(algorithm.grid(), Grid::from);
-    if !algorithm.copes_with(grid) {
-        let found = format!("\"fine\" with algorithm {}", algorithm.name());
-        return wrong("fan", found, "\"paper\", as it tries every action");
-    }
+    check_fan(algorithm, grid)?;
     let has_fan = file.fan.is_some();
     let vehicle = file.vehicle.as_ref().map_or_else(
         || Ok(grid.into()),
         |it| it.0.vehicle(Source::File, algorithm, has_fan, grid),
     )?;
-    let lake = file.on_map(folder)?;
-    let area = terrain::area(&file.area.0, lake.as_ref(), &file.keep_out)?;
+    let lake = file.on_map(folder)?.map(Arc::new);
+    let area = terrain::area(&file.area.0, lake.as_deref(), &file.keep_out)?;
     let terrain = Terrain::new(area, lake.as_ref().map(|it| it.chart));
     let doubts = file.doubts(&area, (algorithm, &vehicle))?;
-    if algorithm == Algorithm::Lawnmower {
-        lawnmower::check_area(&terrain)?;
-    }
-    if algorithm == Algorithm::Chords {
-        chords::check_area(&terrain)?;
+    match algorithm {
+        Algorithm::Lawnmower => lawnmower::check_area(&terrain)?,
+        Algorithm::Chords => chords::check_area(&terrain)?,
+        _ => {}
     }
     let asked = file.ask.0.with(file.price, file.labels);
     let names = ["price", "labels", "ask.worth"];
@@ -503,7 +508,7 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides) -> Result<Missi
         (None, stop.map_or(Ok(true), StopTable::until_closed)?)
     };
     let mission = Mission {
-        lake: lake.map(Arc::new),
+        lake,
         algorithm,
         steps,
         readings: file.readings,

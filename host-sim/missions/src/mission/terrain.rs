@@ -80,7 +80,7 @@ impl AreaTable {
         if !(2..=lake::USUAL).contains(&cells) {
             return wrong("area.cells", cells, format!("2 to {}", lake::USUAL));
         }
-        let lake = Lake::read(&folder.join(name), name, crs, cells);
+        let lake = Lake::read(&folder.join(name), name, crs.as_ref(), cells);
         lake.map(Some).map_err(|error| anyhow!("area.geojson: {error}"))
     }
 }

@@ -72,6 +72,9 @@ impl Frame {
     }
 
     /// The site of a recorded position.
+    ///
+    /// # Errors
+    /// How far off it lies, if that is too far.
     pub fn site(&self, [x, z]: [f64; 2]) -> Result<Site> {
         let [x0, z0] = self.origin.unwrap_or_default();
         let at = if let Some(ellipsoid) = &self.ellipsoid {
@@ -128,6 +131,9 @@ impl Frame {
     }
 
     /// A ring of positions, closed, as longitudes and latitudes.
+    ///
+    /// # Errors
+    /// Metres have none by themselves.
     pub fn ring<P: Copy + Into<Point2<f64>>>(&self, ring: &[P]) -> Result<Vec<[f64; 2]>> {
         ring.iter().chain(ring.first()).map(|at| self.degrees((*at).into())).collect()
     }
