@@ -246,7 +246,8 @@ mod tests {
             let words = Chart::words_in(columns) * usize::from(rows);
             // Few closed cells, so that some hulls are held.
             for word in &mut cells {
-                *word = u32::MAX & !(1 << draws.below(32)) | (draws.below(3) > 0) as u32 * u32::MAX;
+                let closed = 1 << draws.below(32);
+                *word = if draws.below(3) > 0 { u32::MAX } else { !closed };
             }
             let corner = at(draws.below(9_000) as i32 - 4_000, draws.below(9_000) as i32 - 4_000);
             let chart = Chart::new(corner, SIDE, [columns, rows], &cells[..words]).unwrap();
@@ -256,7 +257,7 @@ mod tests {
                 at(corner.x() + x, corner.z() + z)
             };
             let hull = [place(), place(), place()];
-            let hull = &hull[..1 + case % 3];
+            let hull = &hull[..=case % 3];
             for by in [0, 1, 300, 1_700] {
                 let closed = (-3..i32::from(columns) + 3)
                     .flat_map(|x| (-3..i32::from(rows) + 3).map(move |z| [x, z]))
