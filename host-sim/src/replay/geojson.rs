@@ -3,11 +3,12 @@
 use std::iter;
 
 use anyhow::{Context as _, Result};
-use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
+use geojson::{Feature, GeometryValue};
 use planner_core::{Area, Sample};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use crate::replay::sample_file::SampleFile;
+use crate::report::on_map::feature;
 use crate::report::picture::area_around;
 use crate::world::polygon::Polygon;
 
@@ -40,15 +41,4 @@ impl SampleFile {
         };
         self.samples.iter().enumerate().map(point).collect()
     }
-}
-
-pub(crate) fn feature(geometry: GeometryValue, properties: Value) -> Feature {
-    let properties = if let Value::Object(map) = properties { Some(map) } else { None };
-    Feature { geometry: Some(Geometry::new(geometry)), properties, ..Feature::default() }
-}
-
-/// The text of a file of features.
-pub(crate) fn collection(features: Vec<Feature>) -> String {
-    let all = FeatureCollection { features, ..FeatureCollection::default() };
-    json!(all).to_string() + "\n"
 }

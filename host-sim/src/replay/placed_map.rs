@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::mission::front::VertexRecord;
 use crate::replay::MOST_NAMED;
-use crate::replay::geojson::feature;
+use crate::report::on_map::feature;
 use crate::report::picture::{Dot, Picture};
 use crate::report::pieces::{OWN, Pieces};
 use crate::world::frame::Frame;

@@ -1,12 +1,11 @@
 //! A mission in an area from a map, as `GeoJSON` (RFC 7946) for the same map.
 
 use anyhow::{Context as _, Result};
-use geojson::GeometryValue;
+use geojson::{Feature, FeatureCollection, Geometry, GeometryValue};
 use nalgebra::Point2;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::mission::recording::Recording;
-use crate::replay::geojson::{collection, feature};
 use crate::report::pieces::Pieces;
 use crate::world::polygon::Polygon;
 
@@ -53,4 +52,15 @@ pub(crate) fn geojson(recording: &Recording) -> Result<String> {
         features.push(feature(way(&mut places)?, json!({ "kind": "front", "piece": number })));
     }
     Ok(collection(features))
+}
+
+pub(crate) fn feature(geometry: GeometryValue, properties: Value) -> Feature {
+    let properties = if let Value::Object(map) = properties { Some(map) } else { None };
+    Feature { geometry: Some(Geometry::new(geometry)), properties, ..Feature::default() }
+}
+
+/// The text of a file of features.
+pub(crate) fn collection(features: Vec<Feature>) -> String {
+    let all = FeatureCollection { features, ..FeatureCollection::default() };
+    json!(all).to_string() + "\n"
 }
