@@ -243,7 +243,9 @@ impl Folder {
         };
         let mut mission = if is_whole { toml::Table::new() } else { of(other)? };
         mission.extend(keys);
-        let read = scenario::parse("TOML", &mission.to_string(), Overrides::default());
+        let beside = Path::new(PACKAGE).join("scenarios");
+        let text = mission.to_string();
+        let read = scenario::parse_in("TOML", &text, &beside, Overrides::default());
         read.map(drop).map_err(|it| format!("{it:#}"))
     }
 

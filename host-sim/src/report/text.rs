@@ -6,7 +6,7 @@ use planner_core::Line;
 use planner_core::belief::evidence::{Alarm, Suspect};
 
 use crate::mission::algorithm::Algorithm;
-use crate::mission::allowance::ToleranceRecord;
+use crate::mission::allowance::{ToleranceRecord, tidy};
 use crate::mission::from_nothing::SeekRecord;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results, Start,
@@ -334,8 +334,8 @@ pub(crate) fn beginning(start: &Start) -> String {
     let _ = writeln!(
         text,
         "It starts at ({}, {}), heading {} deg{}\n",
-        start.pose.x,
-        start.pose.z,
+        tidy(start.pose.x),
+        tidy(start.pose.z),
         fixed(start.pose.heading.to_degrees(), 1),
         possible(start),
     );

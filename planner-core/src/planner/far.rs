@@ -83,7 +83,12 @@ impl Far {
 
     /// At the usual price: a fifth of the mean of the sides of the rectangle around an area.
     pub fn across(area: &impl Workspace) -> Self {
-        let price = f64::from(USUAL * area.bounds().mean_side());
+        Self::part(area, USUAL)
+    }
+
+    /// At so large a share of the mean of these sides.
+    pub(crate) fn part(area: &impl Workspace, share: f32) -> Self {
+        let price = f64::from(share * area.bounds().mean_side());
         let price_mm = libm::round(price * 1e3 / f64::from(UNITS_PER_METRE)) as u32;
         Self { price_mm: price_mm.max(1), labels: 0 }
     }

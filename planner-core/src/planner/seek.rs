@@ -50,6 +50,9 @@ use crate::planner::{Plan, Planner, StopReason};
 /// Samples that it lends at most.
 pub const GIVEN: usize = 15;
 
+/// What a label costs, as a share of the mean of the area's sides.
+const PRICE: f32 = 0.125;
+
 /// A label is sure where the other one has at most this probability.
 const SURE: f32 = 1.0 / 3_000.0;
 
@@ -115,13 +118,14 @@ pub struct SeekMemory {
 }
 
 impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Seek<D, K, M, G> {
-    /// A planner with what is known so far. A label has the [usual price](Far::across) of far sight.
+    /// A planner with what is known so far. A label costs as much as to drive along an eighth of the
+    /// mean of the area's sides.
     ///
     /// # Errors
     /// [`SetupError`].
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, lines: Lines<K, M>) -> Result<Self, SetupError> {
-        let price = Far::across(&area).price();
+        let price = Far::part(&area, PRICE).price();
         let mut hunt = Hunt::new(area, dynamics, lines)?;
         hunt.scout.price = units(price as f32);
         Ok(Self { hunt, samples: Vec::new(), is: State::Sought })

@@ -16,15 +16,15 @@ use tests::anything::flight::{Finding, fly};
 use tests::{cases, seed};
 
 const LAKES: [&str; 9] = [
-    "Atlin",
-    "Bieler",
-    "Catemaco",
-    "Harrison",
-    "Kyyvesi",
-    "Lac_la_Croix",
-    "Manych-Gudilo",
-    "Ootsa",
-    "Stony",
+    "atlin",
+    "bieler",
+    "catemaco",
+    "harrison",
+    "kyyvesi",
+    "lac-la-croix",
+    "manych-gudilo",
+    "ootsa",
+    "stony",
 ];
 
 const VEHICLES: [&str; 3] = [
@@ -66,7 +66,7 @@ fn scenario(number: u64) -> String {
 
 /// The mission of a scenario, from a start on the water that is drawn.
 fn mission(number: u64) -> Mission {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("lakes");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios/lakes");
     let text = scenario(number);
     // The start is put in place of one that is anywhere on the water.
     let parse = |start: &str| {
@@ -122,8 +122,8 @@ fn little_of_the_water_is_lost() {
 /// Positions come back from the lattice to within a centimetre, across the date line too.
 #[test]
 fn a_map_is_brought_there_and_back() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("lakes");
-    let text = std::fs::read_to_string(folder.join("Stony.geojson")).expect("a lake");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios/lakes");
+    let text = std::fs::read_to_string(folder.join("stony.geojson")).expect("a lake");
     let scratch = tempfile::tempdir().expect("a folder");
     for (lat, lon) in [(60.2, 24.9), (-45.0, 180.0), (0.0, -180.0), (78.0, 179.999)] {
         // The lake is moved in degrees.

@@ -143,8 +143,9 @@ fn points(tables: &[Table<SampleTable>], area: &Terrain, world: &World) -> Resul
             -1 => Label::Negative,
             other => return beyond(&format!("{field}.label"), other),
         };
-        let Some([x, z]) = table.at() else {
-            return wrong(&field, "no x and z", "both");
+        let (Some(x), Some(z)) = (table.x, table.z) else {
+            let missing = if table.x.is_none() { "x" } else { "z" };
+            return wrong(&format!("{field}.{missing}"), "none", "metres");
         };
         let site = site(&field, x, z)?;
         terrain::check_inside(&field, site, area)?;

@@ -6,16 +6,18 @@
 //! A cell is open if no side of a polygon meets it and its middle lies inside. Of the open cells the largest connected piece is
 //! kept: what lies apart from it no robot reaches. How much of the ground is lost to both is told.
 
-use std::fs;
 use std::path::Path;
+use std::{fs, mem};
 
 use anyhow::{Result, anyhow, bail};
-use geojson::{Feature, GeoJson, GeometryValue, Position};
+use geojson::{Feature, GeometryValue, Position};
 use nalgebra::Point2;
 use planner_core::geometry::chart::MOST_CELLS;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::{Area, Chart, Site};
+use serde_json::{Value, json};
 
+use crate::output::kind;
 use crate::world::crs::Crs;
 use crate::world::extent::around;
 use crate::world::frame::Frame;
@@ -49,7 +51,12 @@ impl Lake {
     /// # Errors
     /// Names the file, what was found and what was expected.
     pub(crate) fn read(path: &Path, name: &str, crs: Option<&Crs>, cells: u16) -> Result<Self> {
-        let text = fs::read(path).map_err(|error| anyhow!("{name}: {error}"))?;
+        let text = fs::read(path).map_err(|error| {
+            anyhow!(
+                "found {} as {name}, expected the name of one, beside the scenario",
+                kind::unread(&error)
+            )
+        })?;
         let found: Vec<Vec<Vec<[f64; 2]>>> = polygons(name, &text, crs.is_none())?;
         let all: Vec<_> = found.iter().flatten().flatten().copied().collect();
         let is_geographic = crs.is_none();
@@ -89,13 +96,15 @@ fn metres(units: u32) -> f64 {
 
 /// The polygons of a file, by the positions of their rings: latitude and longitude, or x and z.
 fn polygons(name: &str, text: &[u8], is_geographic: bool) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
-    let file: GeoJson = serde_json::from_slice(text)
+    let mut file: Value = serde_json::from_slice(text)
         .map_err(|error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
-    let features = match file {
-        GeoJson::FeatureCollection(all) => all.features,
-        GeoJson::Feature(one) => vec![one],
-        GeoJson::Geometry(shape) => vec![Feature { geometry: Some(shape), ..Feature::default() }],
+    let features = match file["type"].as_str() {
+        Some("FeatureCollection") => mem::take(&mut file["features"]),
+        Some("Feature") => json!([file]),
+        _ => json!([{ "type": "Feature", "geometry": file, "properties": {} }]),
     };
+    let features: Vec<Feature> = serde_json::from_value(features)
+        .map_err(|error| anyhow!("{name}: expected GeoJSON: {error}"))?;
     let mut found = Vec::new();
     let mut others = None;
     for feature in features {

@@ -6,7 +6,7 @@ use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
-use planner_core::{Area, Charted, Hull, KeepOut, Line, Site, Workspace as _};
+use planner_core::{Area, Chart, Charted, Hull, KeepOut, Line, Site, Workspace as _};
 use serde::Deserialize;
 
 use crate::mission::allowance::tidy;
@@ -95,6 +95,9 @@ pub(crate) fn on_map(
     [x, z]: [&mut Option<f64>; 2],
     [lat, lon]: [Option<f64>; 2],
 ) -> Result<()> {
+    if lake.is_none() && (lat, lon) == (None, None) {
+        return Ok(());
+    }
     let frame = lake.map(|it| &it.frame);
     let recorded = match (lat, lon, *x, *z) {
         (None, None, None, None) => return Ok(()),
@@ -107,8 +110,7 @@ pub(crate) fn on_map(
             Some(frame) if frame.is_geographic() => {
                 return wrong(field, "x and z", "lat and lon, as the area has them");
             }
-            Some(_) => [east, north],
-            None => return Ok(()),
+            _ => [east, north],
         },
         _ => return wrong(field, "a part of a position", "lat and lon, or x and z"),
     };
@@ -247,8 +249,12 @@ pub fn check_inside(field: &str, site: Site, area: &Terrain) -> Result<()> {
         );
         return wrong(field, found, expected);
     }
-    if area.chart().is_some_and(|it| it.cell_of(site).is_none_or(|cell| !it.is_open(cell))) {
-        return wrong(field, found, "a point on a cell that lies wholly inside area.geojson");
+    let is_open = |it: &Chart<'_>| it.cell_of(site).is_some_and(|cell| it.is_open(cell));
+    if let Some(chart) = area.chart().filter(|it| !is_open(it)) {
+        let side = tidy(f64::from(chart.side()) / f64::from(UNITS_PER_METRE));
+        let found = format!("{found}, metres from the middle");
+        let expected = format!("a point whose cell of {side} m lies wholly inside area.geojson");
+        return wrong(field, found, expected);
     }
     let in_the_way = area.keep_outs().position(|it| !it.is_clear_of(&[site], 0));
     in_the_way.map_or(Ok(()), |k| wrong(field, found, format!("a point outside keep_out[{k}]")))
