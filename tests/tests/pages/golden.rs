@@ -27,6 +27,7 @@ fn standard_scenarios() {
     let mut files: Vec<_> = std::fs::read_dir(&folder)
         .expect("the scenarios")
         .map(|entry| entry.expect("an entry").path())
+        .filter(|file| file.is_file())
         .collect();
     files.sort();
     let mut table = String::new();
