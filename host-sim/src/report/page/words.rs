@@ -77,10 +77,12 @@ pub(crate) fn ended(results: &Results) -> impl Iterator<Item = Told> {
     all.map(|(of, words)| Told::new(of, minus(&sentence(words.trim_end()))))
 }
 
-/// What a mission is, before it begins.
+/// What a mission is, before it begins, but the places: the map shows them.
 pub(crate) fn about(recording: &Recording) -> Vec<String> {
+    const PLACES: [&str; 2] = ["It starts at", "The oracle's points"];
     let beginning = text::beginning(&recording.results.start);
-    beginning.lines().filter(|it| !it.is_empty()).map(minus).collect()
+    let is_told = |it: &&str| !it.is_empty() && !PLACES.iter().any(|place| it.starts_with(place));
+    beginning.lines().filter(is_told).map(minus).collect()
 }
 
 fn given(results: &Results) -> String {
