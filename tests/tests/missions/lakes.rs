@@ -40,8 +40,8 @@ const TASKS: [(&str, &str); 4] =
 /// A scenario in a lake: a line or a spill somewhere in it, and a start on the water.
 fn scenario(number: u64) -> String {
     let lake = LAKES[(number % 9) as usize];
-    let vehicle = VEHICLES[(number / 9 % 3) as usize];
-    let (algorithm, what) = TASKS[(number / 27 % 4) as usize];
+    let vehicle = VEHICLES[((number / 9 + number) % 3) as usize];
+    let (algorithm, what) = TASKS[(number / 9 % 4) as usize];
     let mut rng = ChaCha8Rng::seed_from_u64(seed(52) + number);
     let mut text = format!(
         "algorithm = \"{algorithm}\"\nsteps = 200\nseed = {number}\narea = {{ geojson = \"{lake}.geojson\" }}\n\
@@ -89,11 +89,11 @@ fn mission(number: u64) -> Mission {
 #[test]
 fn no_motion_leaves_the_water() {
     let mut ends = BTreeMap::new();
-    for number in 0..cases(108, 2_700) {
+    for number in 0..cases(36, 3_600) {
         let mission = mission(number);
         let flight = fly(&mission, mission.vehicle, u64::MAX);
         let told = format!("{:?}", flight.ending);
-        *ends.entry((TASKS[(number / 27 % 4) as usize], told)).or_insert(0) += 1;
+        *ends.entry((TASKS[(number / 9 % 4) as usize], told)).or_insert(0) += 1;
         let broken = flight.findings.iter().filter(|it| it.0 != Finding::TooLong);
         assert_eq!(broken.count(), 0, "{number}: {flight:?}\n{}", scenario(number));
     }
