@@ -119,7 +119,7 @@ fuzz_target!(|bytes: &[u8]| {
                     }
                 }
                 Algorithm::Watch { front, noise, stretch } => {
-                    let mut planner = setup.guard::<_, _, 16, 16, 3>(terms, front, stretch);
+                    let mut planner = setup.guard(terms, front, stretch);
                     if let Ok(mut prepared) = setup.prepare(&mut planner, Prior::Area, noise) {
                         fly(prepared.planner_mut(), &setup);
                     }
