@@ -15,7 +15,7 @@ use nalgebra::Point2;
 use planner_core::geometry::chart::MOST_CELLS;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::{Area, Chart, Site};
-use serde_json::{Value, json};
+use serde_json::{Number, Value, json};
 
 use crate::output::kind;
 use crate::world::crs::Crs;
@@ -98,6 +98,7 @@ fn metres(units: u32) -> f64 {
 fn polygons(name: &str, text: &[u8], is_geographic: bool) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let mut file: Value = serde_json::from_slice(text)
         .map_err(|error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;
+    plain(&mut file);
     let features = match file["type"].as_str() {
         Some("FeatureCollection") => mem::take(&mut file["features"]),
         Some("Feature") => json!([file]),
@@ -138,6 +139,20 @@ fn polygons(name: &str, text: &[u8], is_geographic: bool) -> Result<Vec<Vec<Vec<
         Ok(ring)
     };
     found.iter().map(|rings| rings.iter().map(ring).collect()).collect()
+}
+
+/// Numbers as the program has them. Where serde keeps all digits of a file, it does not give `24.90` as a number.
+fn plain(value: &mut Value) {
+    match value {
+        Value::Number(number) => {
+            if let Some(same) = number.as_f64().and_then(Number::from_f64) {
+                *number = same;
+            }
+        }
+        Value::Array(all) => all.iter_mut().for_each(plain),
+        Value::Object(all) => all.values_mut().for_each(plain),
+        _ => {}
+    }
 }
 
 /// The cells of polygons, what is lost by them, and all of the ground, square metres.

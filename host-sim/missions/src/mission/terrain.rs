@@ -12,6 +12,7 @@ use serde::Deserialize;
 use crate::mission::allowance::tidy;
 use crate::mission::lake::{self, Lake};
 use crate::mission::strict::{Numbers, Table, beyond, wrong};
+use crate::output::notes::mention;
 use crate::world::polygon::Polygon;
 
 /// Where motions may go: an area, and the cells of a map if it is from one.
@@ -81,7 +82,9 @@ impl AreaTable {
             return wrong("area.cells", cells, format!("2 to {}", lake::USUAL));
         }
         let lake = Lake::read(&folder.join(name), name, crs.as_ref(), cells);
-        lake.map(Some).map_err(|error| anyhow!("area.geojson: {error}"))
+        let lake = lake.map_err(|error| anyhow!("area.geojson: {error}"))?;
+        mention(format_args!("area.geojson: {}", lake.words()));
+        Ok(Some(lake))
     }
 }
 
@@ -253,7 +256,9 @@ pub fn check_inside(field: &str, site: Site, area: &Terrain) -> Result<()> {
     if let Some(chart) = area.chart().filter(|it| !is_open(it)) {
         let side = tidy(f64::from(chart.side()) / f64::from(UNITS_PER_METRE));
         let found = format!("{found}, metres from the middle");
-        let expected = format!("a point whose cell of {side} m lies wholly inside area.geojson");
+        let expected = format!(
+            "a point whose cell of {side} m lies wholly inside area.geojson, in its largest part"
+        );
         return wrong(field, found, expected);
     }
     let in_the_way = area.keep_outs().position(|it| !it.is_clear_of(&[site], 0));

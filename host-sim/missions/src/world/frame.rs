@@ -206,11 +206,13 @@ fn middle(positions: &[[f64; 2]], reach: f64) -> [f64; 2] {
 /// The middle of latitudes and longitudes, to a ten-thousandth of a degree. Longitudes are counted from the first
 /// row's, so that it does not matter where they jump by a turn.
 fn geographic_middle(positions: &[[f64; 2]]) -> [f64; 2] {
-    let Some(&[_, first]) = positions.first() else { return [0.0; 2] };
-    let turned = |lon: f64| libm::remainder(lon - first, 360.0);
+    let Some(&[south, first]) = positions.first() else { return [0.0; 2] };
+    // As many metres as a degree of latitude, at most.
+    let metres = libm::cos(south.to_radians()).max(1e-3);
+    let turned = |lon: f64| metres * libm::remainder(lon - first, 360.0);
     let from_first: Vec<_> = positions.iter().map(|[lat, lon]| [*lat, turned(*lon)]).collect();
     let [lat, lon] = middle(&from_first, REACH / METRES_PER_DEGREE);
-    [lat, libm::remainder(lon + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
+    [lat, libm::remainder(lon / metres + first, 360.0)].map(|degrees| (degrees * 1e4).round() / 1e4)
 }
 
 /// Checks a latitude and a longitude.
