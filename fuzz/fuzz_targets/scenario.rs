@@ -11,7 +11,7 @@ use libfuzzer_sys::fuzz_target;
 use planner_core::Workspace as _;
 
 fuzz_target!(|text: &str| {
-    let overrides = Overrides { algorithm: None, steps: None, seed: None };
+    let overrides = Overrides::default();
     let mission = match scenario::parse("it.toml", text, overrides) {
         Ok(mission) => mission,
         Err(error) => {

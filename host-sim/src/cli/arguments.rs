@@ -15,6 +15,7 @@ use crate::cli::fly::{FlyArgs, fly};
 use crate::cli::hil::{HilArgs, hil};
 use crate::cli::init::{Init, init};
 use crate::cli::join::{JoinArgs, join};
+use crate::cli::next::{Next, next};
 use crate::cli::reference::{ReferenceArgs, reference};
 use crate::cli::replay::{ReplayArgs, replay};
 use crate::cli::run::{RunArgs, run};
@@ -55,6 +56,8 @@ fn with_hyphens(command: clap::Command) -> clap::Command {
 pub(crate) enum Command {
     /// Run one mission
     Run(RunArgs),
+    /// Print what a robot is to do next, in JSON, after a request in JSON on standard input
+    Next(Next),
     /// Print what samples recorded elsewhere determine
     Replay(ReplayArgs),
     /// Join the maps of several robots on one front
@@ -106,6 +109,7 @@ impl Cli {
             None => paper::tell(),
             Some(Command::Campaign(args)) => campaign(&args),
             Some(Command::Join(args)) => join(&args),
+            Some(Command::Next(args)) => next(&args),
             Some(Command::Figure(args)) => figure(&args),
             Some(Command::Size(args)) => size(&args),
             Some(Command::Reference(args)) => reference(&args),

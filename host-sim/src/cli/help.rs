@@ -32,6 +32,15 @@ Examples:
 
 The scenario file is described in docs/reference/scenario.md; `host-sim init` writes one to begin with.";
 
+pub(crate) const NEXT: &str = "\
+Examples:
+  echo '{\"oracle\": [], \"pose\": {\"x\": 2, \"z\": 1}}' | host-sim next
+  host-sim next lake.toml < request.json
+      the same, with what the request does not say from a scenario file
+
+A request has the keys of a scenario, and `pose`. The answer says the next motion and has a `state`. The next request is
+the same with that state, the `pose` where the motion ended and the `label` that was read there. See docs/reference/next.md.";
+
 pub(crate) const HIL: &str = "\
 Examples:
   host-sim hil mission.toml --emulator         the firmware under QEMU; it is built where needed

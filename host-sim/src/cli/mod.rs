@@ -18,6 +18,7 @@ mod help;
 mod hil;
 mod init;
 mod join;
+mod next;
 pub mod paper;
 mod patches;
 mod reference;

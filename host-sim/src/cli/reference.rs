@@ -8,6 +8,7 @@ use clap::Args;
 use crate::cli::format::Format;
 use crate::cli::help;
 use crate::mission::scenario::{self, Overrides};
+use crate::mission::setting::Setting;
 use crate::mission::vehicle::with_steps;
 use crate::output::file::{json, prepare};
 use crate::output::plain;
@@ -34,6 +35,9 @@ pub(crate) struct ReferenceArgs {
     /// The step between directions, radians [default: the vehicle's]
     #[arg(long, value_name = "RADIANS")]
     pub(crate) turn_step: Option<f64>,
+    /// Any key of the scenario, as noise.p=0.9; as often as there are keys
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Setting>,
     /// Write a figure of the optimum here
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
@@ -45,7 +49,8 @@ pub(crate) struct ReferenceArgs {
 /// Solves it, and what to print.
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<String> {
     let name = plain::name(&args.scenario.display().to_string());
-    let mut mission = scenario::read(&args.scenario, Overrides::default())?;
+    let mut mission =
+        scenario::read(&args.scenario, Overrides { set: &args.set, ..Overrides::default() })?;
     mission.warn(&name);
     if args.speed_step.is_some() || args.turn_step.is_some() {
         mission.vehicle =

@@ -12,13 +12,15 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
+use crate::mission::setting::Setting;
+use crate::mission::trace;
 use crate::output::file::{Output, prepare};
 use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
 use crate::report::pieces::Pieces;
-use crate::report::{flat, log, on_map, text, trace};
+use crate::report::{flat, log, on_map, text};
 
 #[derive(Debug, Args)]
 pub(crate) struct Run {
@@ -33,6 +35,9 @@ pub(crate) struct Run {
     /// Seed of whatever is random [default: the file's]
     #[arg(long)]
     pub(crate) seed: Option<u64>,
+    /// Any key of the scenario, as noise.p=0.9; as often as there are keys
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) set: Vec<Setting>,
     /// Write the trace here, as JSON Lines
     #[arg(long, value_name = "FILE.jsonl")]
     pub(crate) trace: Option<PathBuf>,
@@ -126,10 +131,10 @@ impl Run {
     pub(crate) fn mission_by(
         &self,
         algorithm: Option<Algorithm>,
-        read: fn(&Path, Overrides) -> Result<Mission>,
+        read: fn(&Path, Overrides<'_>) -> Result<Mission>,
     ) -> Result<Mission> {
-        let Self { steps, seed, .. } = *self;
-        let mission = read(&self.scenario, Overrides { algorithm, steps, seed })?;
+        let &Self { steps, seed, ref set, .. } = self;
+        let mission = read(&self.scenario, Overrides { algorithm, steps, seed, set })?;
         if self.candidates.is_some() && !mission.is_noisy() {
             bail!("--candidates: found a mission without noise, expected one with noisy labels");
         }

@@ -17,7 +17,7 @@ use crate::fly::label::LabelSource;
 use crate::fly::link::Link;
 use crate::fly::orders::{AUTOPILOT, Order};
 use crate::fly::pilot::Pilot;
-use crate::report::trace;
+use crate::mission::trace;
 
 use spoiled::{
     Flown, LIMITS, SYSTEM, Spoil, as_it_is, circling, fly, fly_mission, fly_with, is_stop, mission,

@@ -11,9 +11,9 @@ use planner_core::{Label, Reading};
 use serde_json::Value;
 
 use crate::mission::results::{End, Start, StepResult};
+use crate::mission::trace::{self, Record};
 use crate::output::file::place_for;
 use crate::output::partial::{Begin, Partial};
-use crate::report::trace::{self, Record};
 
 /// What was sensed in a step.
 #[derive(Clone, Debug)]

@@ -25,7 +25,7 @@ use crate::mission::flight::Flown;
 use crate::mission::read_out::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::{Ending, StepResult};
-use crate::report::trace;
+use crate::mission::trace;
 use crate::world::on_the_way::Way;
 use crate::world::robot::{Glimpse, Robot};
 

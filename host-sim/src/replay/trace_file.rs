@@ -3,8 +3,8 @@
 use anyhow::{Result, anyhow, bail};
 use planner_core::Label;
 
+use crate::mission::trace::Record;
 use crate::replay::rows::{Layout, Rows, Traced};
-use crate::report::trace::Record;
 
 /// The rows of a trace. A reading on the boundary itself has no side, and is left out.
 ///

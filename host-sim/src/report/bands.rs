@@ -239,7 +239,7 @@ mod tests {
         let mut told = [0, 0];
         for seed in 1..=12 {
             let steps = Some([1, 5, 10, 25][seed as usize % 4]);
-            let overrides = Overrides { algorithm: None, steps, seed: Some(seed) };
+            let overrides = Overrides { steps, seed: Some(seed), ..Overrides::default() };
             let mission = scenario::parse("", scenario::PAPER_NOISY, overrides).unwrap();
             let recording = Recording::of(&mission).unwrap();
             let table = recording.belief.hypotheses().unwrap();

@@ -9,8 +9,8 @@ use serde::{Serialize, Serializer};
 use serde_json::{Map, Value, json};
 
 use crate::mission::results::{Results, Start, StepResult};
+use crate::mission::trace;
 use crate::output::file::json;
-use crate::report::trace;
 
 /// The keys that every row has, in their order. Keys that only some missions have come after them.
 const KEYS: &str = "algorithm seed p truth_angle truth_slope truth_intercept step problem recovery index v w x z \

@@ -13,7 +13,7 @@ use crate::world::polygon::Polygon;
 ///
 /// # Errors
 /// For an area in metres, which has no place on a map.
-pub(crate) fn geojson(recording: &Recording) -> Result<String> {
+pub fn geojson(recording: &Recording) -> Result<String> {
     let Recording { mission, results, belief, .. } = recording;
     let lake = mission
         .lake

@@ -13,6 +13,7 @@ use tempfile::TempDir;
 mod figures;
 mod help;
 mod interruption;
+mod next;
 mod tables;
 mod weighing;
 

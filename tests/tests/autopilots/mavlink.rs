@@ -11,7 +11,7 @@ use std::{fs, thread};
 
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides, PAPER_NOISELESS};
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use nalgebra::Point2;
 use serde_json::{Value, json};
 use tests::build;

@@ -14,6 +14,7 @@ mod lakes;
 mod lawnmower;
 mod lookahead;
 mod margin;
+mod next;
 mod pairs;
 mod porter;
 mod readings;

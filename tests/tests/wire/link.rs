@@ -11,7 +11,7 @@ use host_sim::campaign::standard_field;
 use host_sim::hil::faults::Faults;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use host_sim::world::errors::Errors;
 use planner_core::error::{GivenError, GridError, RoomError, ShapeError};
 use planner_core::link::delivery::{Link, LinkError};

@@ -12,7 +12,7 @@ use host_sim::hil::flight::{self, Chip, Timings};
 use host_sim::hil::player::Player;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::{ClockRate, EndReason, LabelSource, MissionEnd};
 use planner_core::link::station::{CfcAlone, Flown, Station};

@@ -13,7 +13,7 @@ use host_sim::hil::player::Player;
 use host_sim::hil::setup;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use host_sim::world::errors::Errors;
 use planner_core::link::frame::Decoder;
 use planner_core::link::message::{LabelSource, Request};

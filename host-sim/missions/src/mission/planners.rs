@@ -73,7 +73,9 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
     }
 }
 
-fn erased(planner: impl Planner<Belief: ReadOut + Sized + 'static> + 'static) -> AnyPlanner {
+fn erased(
+    planner: impl Planner<Belief: ReadOut + Sized + 'static> + Send + Sync + 'static,
+) -> AnyPlanner {
     Box::new(Erased(planner))
 }
 
@@ -127,7 +129,7 @@ impl Mission {
         }
     }
 
-    fn baseline(&self, strategy: impl Strategy<AnyVehicle> + 'static) -> AnyPlanner {
+    fn baseline(&self, strategy: impl Strategy<AnyVehicle> + Send + Sync + 'static) -> AnyPlanner {
         let (dynamics, area) = (self.vehicle, self.terrain());
         Box::new(Baseline { strategy, ground: Ground { dynamics, area, belief: self.belief() } })
     }

@@ -60,10 +60,10 @@ impl Expectation {
 }
 
 /// A planner whose belief can be read out.
-pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut>>;
+pub type AnyPlanner = Box<dyn Planner<Belief = dyn ReadOut> + Send + Sync>;
 
 /// A belief that can be read out.
-pub trait ReadOut: Belief + Debug + Send {
+pub trait ReadOut: Belief + Debug + Send + Sync {
     /// What is known, in figures.
     fn knowledge(&self) -> Knowledge;
 
@@ -102,6 +102,12 @@ pub trait ReadOut: Belief + Debug + Send {
 
     /// A copy.
     fn boxed(&self) -> Box<dyn ReadOut>;
+}
+
+impl Clone for Box<dyn ReadOut> {
+    fn clone(&self) -> Self {
+        self.boxed()
+    }
 }
 
 /// Places that the map of a front has more when the mission ends, the oldest first.

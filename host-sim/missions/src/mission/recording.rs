@@ -46,6 +46,7 @@ pub struct Recording {
 }
 
 /// A mission that is being recorded.
+#[derive(Clone)]
 pub struct Recorder {
     mission: Mission,
     steps: Vec<Step>,
@@ -71,6 +72,11 @@ impl Recorder {
         let evidence = Evidence::NONE;
         let (passed, width) = (Vec::new(), mission.found_width());
         Self { mission, steps, results, before, belief, passed, evidence, alarm: None, width }
+    }
+
+    /// Says that something was known before the first step, beside what the scenario gives.
+    pub(crate) fn begin_with(&mut self, belief: &dyn ReadOut) {
+        self.belief = belief.boxed();
     }
 
     /// Takes down what was read on the way of the step that comes next.

@@ -30,12 +30,13 @@ use crate::mission::lawnmower;
 use crate::mission::names::{CrossingName, FanName, FollowingName, PolicyName, PriorName};
 use crate::mission::seeking::{self, SeekTable};
 use crate::mission::sensor::{self, FaultTable};
+use crate::mission::setting::{self, Setting};
 use crate::mission::stop::StopTable;
 use crate::mission::strict::{Table, beyond, checked, no_angle, wrong};
 use crate::mission::terrain::{self, AreaTable, KeepOutTable, Terrain, on_map, site};
 use crate::mission::truth::TruthTable;
 use crate::mission::vehicle::{self, Source, VehicleTable};
-use crate::mission::wording::{SCENARIO, at_its_line, expected, of_toml};
+use crate::mission::wording::{SCENARIO, at_its_line, check_toml, expected, of_toml};
 use crate::output::kind;
 use crate::world::World;
 use crate::world::errors::{CUT, Errors};
@@ -201,20 +202,22 @@ struct StartTable {
 
 /// What flags put in place of the file's values.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Overrides {
+pub struct Overrides<'a> {
     /// Who plans.
     pub algorithm: Option<Algorithm>,
     /// Steps at most.
     pub steps: Option<u32>,
     /// Seed of whatever is random.
     pub seed: Option<u64>,
+    /// Any other key.
+    pub set: &'a [Setting],
 }
 
 /// The mission that a scenario file describes, to be flown in a simulated world.
 ///
 /// # Errors
 /// One message with the file, the line or field, what was found and what was expected.
-pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
+pub fn read(path: &Path, overrides: Overrides<'_>) -> Result<Mission> {
     parse_in(&path.display().to_string(), &content(path)?, beside(path), overrides)
 }
 
@@ -222,8 +225,21 @@ pub fn read(path: &Path, overrides: Overrides) -> Result<Mission> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
-    let mission = any(&path.display().to_string(), &content(path)?, beside(path), overrides)?;
+pub fn read_real(path: &Path, overrides: Overrides<'_>) -> Result<Mission> {
+    parse_real(&path.display().to_string(), &content(path)?, beside(path), overrides)
+}
+
+/// As [`read_real`], from the text of the file called `name` in a folder.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse_real(
+    name: &str,
+    text: &str,
+    folder: &Path,
+    overrides: Overrides<'_>,
+) -> Result<Mission> {
+    let mission = any(name, text, folder, overrides)?;
     Ok(Mission { sensor: Vec::new(), ..mission })
 }
 
@@ -231,7 +247,7 @@ pub fn read_real(path: &Path, overrides: Overrides) -> Result<Mission> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
+pub fn parse(name: &str, text: &str, overrides: Overrides<'_>) -> Result<Mission> {
     parse_in(name, text, Path::new(""), overrides)
 }
 
@@ -239,7 +255,12 @@ pub fn parse(name: &str, text: &str, overrides: Overrides) -> Result<Mission> {
 ///
 /// # Errors
 /// As [`parse`].
-pub fn parse_in(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
+pub fn parse_in(
+    name: &str,
+    text: &str,
+    folder: &Path,
+    overrides: Overrides<'_>,
+) -> Result<Mission> {
     let mission = any(name, text, folder, overrides)?;
     if !mission.world.is_known() {
         let found = wrong("truth", "none", BOUNDARY);
@@ -252,24 +273,36 @@ pub fn parse_in(name: &str, text: &str, folder: &Path, overrides: Overrides) -> 
 const BOUNDARY: &str = "the boundary to simulate, as truth = { slope = 0.4, intercept = 3.5 }";
 
 /// The folder of a file.
-fn beside(path: &Path) -> &Path {
+pub fn beside(path: &Path) -> &Path {
     path.parent().unwrap_or(path)
 }
 
-fn content(path: &Path) -> Result<String> {
+/// What is in a scenario file.
+///
+/// # Errors
+/// Names the file and what was found in its place.
+pub fn content(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|error| {
         anyhow!("{}: found {}, expected {SCENARIO}", path.display(), kind::unread(&error))
     })
 }
 
 /// The mission, whether it says what is true or not.
-fn any(name: &str, text: &str, folder: &Path, overrides: Overrides) -> Result<Mission> {
-    let mut file: File = toml::from_str(text).map_err(|error| of_toml(name, text, &error))?;
-    mission(&mut file, folder, overrides).map_err(|error| {
-        // A wrong number of steps in a flag is reported as the flag's.
-        let is_flag = error.to_string().starts_with("--");
-        if is_flag { error } else { at_its_line(name, text, format_args!("{error:#}")) }
-    })
+fn any(name: &str, text: &str, folder: &Path, overrides: Overrides<'_>) -> Result<Mission> {
+    check_toml(name, text)?;
+    let set = setting::put(overrides.set, text)?;
+    let placed = |why: String| {
+        let key = why.split(": ").next().unwrap_or_default();
+        match overrides.set.iter().rfind(|it| it.gives(key)) {
+            // A wrong number in a flag is reported as the flag's.
+            _ if why.starts_with("--") => anyhow!(why),
+            Some(setting) => anyhow!("{}{why}", setting.by()),
+            None => at_its_line(name, text, why),
+        }
+    };
+    let file: Result<File, _> = toml::from_str(&set);
+    let mut file = file.map_err(|error| placed(of_toml(&set, &error)))?;
+    mission(&mut file, folder, overrides).map_err(|error| placed(format!("{error:#}")))
 }
 
 /// The most steps of a mission whose labels are true: a version space makes room for more.
@@ -436,7 +469,7 @@ fn check_fan(algorithm: Algorithm, grid: Grid) -> Result<()> {
     wrong("fan", found, "\"paper\", as it tries every action")
 }
 
-fn mission(file: &mut File, folder: &Path, overrides: Overrides) -> Result<Mission> {
+fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<Mission> {
     let steps = overrides.steps.unwrap_or(file.steps);
     check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);

@@ -184,37 +184,40 @@ pub(crate) fn at_its_line(name: &str, text: &str, refusal: impl Display) -> Erro
     anyhow!("{name}{at}: {refusal}")
 }
 
-/// What is wrong with a text that is no scenario: its line, its key, what was found and what was expected.
-pub(crate) fn of_toml(name: &str, text: &str, error: &toml::de::Error) -> Error {
-    let span = error.span().unwrap_or(0..0);
-    let (line, said) = (line(text, span.start), error.message());
-    if DeTable::parse(text).is_err() {
-        return syntax(name, text, line, said);
-    }
+/// Whether a text is TOML at all.
+///
+/// # Errors
+/// Names the line that is not, and what is expected.
+pub(crate) fn check_toml(name: &str, text: &str) -> Result<(), Error> {
+    DeTable::parse(text).map(drop).map_err(|error| {
+        let at = error.span().map_or(0, |it| it.start);
+        syntax(name, text, line(text, at), error.message())
+    })
+}
+
+/// What is wrong with a table that is no scenario: its key, what was found and what was expected.
+pub(crate) fn of_toml(text: &str, error: &toml::de::Error) -> String {
+    let (span, said) = (error.span().unwrap_or(0..0), error.message());
     let keys = keys(text);
     let within = keys.iter().filter(|(_, it)| it.start <= span.start && span.end <= it.end);
     let key = within.min_by_key(|(_, it)| it.len()).map_or("", |(key, _)| key.as_str());
-    let at = format!("{name}:{line}: {key}");
     if let Some(missing) = said.strip_prefix("missing field ") {
         let missing = missing.replace('`', "");
-        let (key, at) = if text[span].starts_with(['{', '[']) {
-            (format!("{key}.{missing}"), format!("{name}:{line}"))
-        } else {
-            (missing, name.to_owned())
-        };
-        return anyhow!("{at}: {key}: found none, expected {}", expected(&key).unwrap_or("one"));
+        let is_inner = text[span].starts_with(['{', '[']);
+        let key = if is_inner { format!("{key}.{missing}") } else { missing };
+        return format!("{key}: found none, expected {}", expected(&key).unwrap_or("one"));
     }
     let names = || said.split_once("expected ").map_or("none", |(_, names)| names).replace('`', "");
     if said.starts_with("unknown field") {
-        return anyhow!("{at}: found an unknown key, expected {}", names());
+        return format!("{key}: found an unknown key, expected {}", names());
     }
     let found = text[span].split_whitespace().collect::<Vec<_>>().join(" ");
     if said.starts_with("unknown variant") {
-        return anyhow!("{at}: found {found}, expected {}", names());
+        return format!("{key}: found {found}, expected {}", names());
     }
     let by_type = said.split_once("expected ").or(said.split_once("wanted "));
     let by_type = by_type.map_or_else(|| said.to_owned(), |(_, expected)| plainly(expected));
-    anyhow!("{at}: found {found}, expected {}", expected(key).map_or(by_type, Into::into))
+    format!("{key}: found {found}, expected {}", expected(key).map_or(by_type, Into::into))
 }
 
 /// A line that is no TOML.

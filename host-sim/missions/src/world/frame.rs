@@ -100,11 +100,17 @@ impl Frame {
 
     /// A position as it would have been recorded: `x` and `z`, or latitude and longitude.
     pub fn recorded(&self, at: Point2<f64>) -> [f64; 2] {
+        let it = self.exactly(at);
+        if self.is_geographic() { it.map(to_grain) } else { it }
+    }
+
+    /// The same with all digits, so that [`site`](Self::site) finds the same place again.
+    pub fn exactly(&self, at: Point2<f64>) -> [f64; 2] {
         let [x0, z0] = self.origin.unwrap_or_default();
         let Some(ellipsoid) = &self.ellipsoid else { return [at.x + x0, at.y + z0] };
         let azimuth = libm::atan2(at.x, at.y).to_degrees();
         let (lat, lon): (f64, f64) = ellipsoid.direct(x0, z0, azimuth, libm::hypot(at.x, at.y));
-        [lat, lon].map(to_grain)
+        [lat, lon]
     }
 
     /// A position in the file's coordinates, if these are not the planner's.

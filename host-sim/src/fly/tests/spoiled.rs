@@ -17,7 +17,7 @@ use crate::fly::pilot::Pilot;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides, PAPER_NOISELESS};
-use crate::report::trace;
+use crate::mission::trace;
 
 pub(super) const SYSTEM: u8 = 3;
 

@@ -10,7 +10,7 @@ use host_sim::hil::player::Played;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::results::{Ending, Results};
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use rayon::prelude::*;
 use tests::{is_long, is_updating};
 

@@ -4,7 +4,7 @@ use anyhow::Result;
 use host_sim::hil::player::{Played, Player};
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use planner_core::link::message::LabelSource;
 
 use super::{Emulator, Event};

@@ -14,7 +14,7 @@ use host_sim::hil::faults::Faults;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::asking::Asking;
 use host_sim::mission::definition::Mission;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use planner_core::link::message::LabelSource;
 use tests::fronts::following;
 use tests::missions::{of_any_vehicle, reading};

@@ -15,7 +15,7 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::motion::unicycle::Grid;
 use planner_core::{Accuracy, Angle, AnyVehicle, Goal, Unicycle};

@@ -20,7 +20,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::results::Results;
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use host_sim::world::faults::{Fault, FaultKind};
 use planner_core::link::delivery::{Link, Port};
 use planner_core::link::message::LabelSource;
@@ -68,8 +68,11 @@ fn flies(board: &Board, mission: &Mission, faults: Faults) -> Played {
 #[test]
 fn the_chip_stops_when_enough_is_known() {
     let Some(chip) = start(&[]) else { return };
-    let overrides =
-        Overrides { algorithm: Some(Algorithm::Lookahead), steps: Some(32), seed: None };
+    let overrides = Overrides {
+        algorithm: Some(Algorithm::Lookahead),
+        steps: Some(32),
+        ..Overrides::default()
+    };
     for (number, (text, stop)) in (1..).zip([
         (scenario::PAPER_NOISELESS, "slope_arc_deg = 0.5"),
         (scenario::PAPER_NOISELESS, "misclassified = 0.001"),
@@ -171,7 +174,8 @@ fn the_log_warns_of_labels_that_no_line_explains() {
         (scenario::PAPER_NOISY, Algorithm::Scc, inverted),
         (scenario::PAPER_NOISY, Algorithm::Lookahead, stuck),
     ]) {
-        let overrides = Overrides { algorithm: Some(algorithm), steps: Some(32), seed: None };
+        let overrides =
+            Overrides { algorithm: Some(algorithm), steps: Some(32), ..Overrides::default() };
         let text = text.replace("p = 0.7", "p = 0.95");
         let mut mission = scenario::parse("", &text, overrides).expect("a good scenario");
         mission.sensor = vec![Fault { kind, from: 3, to: u32::MAX }];

@@ -6,7 +6,7 @@ use chips::emulator::missions::trace_here;
 use host_sim::hil::faults::Faults;
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;
-use host_sim::report::trace;
+use host_sim::mission::trace;
 use planner_core::link::message::LabelSource;
 use rayon::prelude::*;
 

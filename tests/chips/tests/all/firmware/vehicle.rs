@@ -91,7 +91,8 @@ impl Flight {
         };
         // What planners differ in beside their name is theirs by default.
         let text = text.replace("varrho = 0.1\n", &format!("readings = {readings}\n"));
-        let overrides = Overrides { algorithm: Some(algorithm), steps: Some(steps), seed: None };
+        let overrides =
+            Overrides { algorithm: Some(algorithm), steps: Some(steps), ..Overrides::default() };
         let mission = scenario::parse("", &text, overrides).expect("a good scenario");
         Mission { watch: self.watch.map(f64::from), ..mission }
     }

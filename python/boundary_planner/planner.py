@@ -1,0 +1,120 @@
+"""A planner for a robot that somebody else moves."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from boundary_planner import _native
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion to make: turn, then drive (a car drives an arc), and end at a pose."""
+
+    pose: dict[str, float]
+    """Where it ends: `x`, `z` and `heading`, or `lat`, `lon` and `heading` in an area from a map."""
+    turn: float
+    """Radians."""
+    drive: float
+    """Metres."""
+    wants_label: bool
+    """Whether a label is wanted at its end."""
+    chance: float | None
+    """The chance that this label is +1."""
+    bits: float | None
+    """What it tells, on average."""
+
+
+class Planner:
+    """Tells motions, and is told what they came to.
+
+    >>> planner = Planner(algorithm="lookahead", oracle=[], pose={"x": 2, "z": 1})
+    >>> while motion := planner.plan():
+    ...     pose = drive_to(motion)  # yours
+    ...     planner.observe(pose, read_label() if motion.wants_label else None)
+    >>> planner.stop, planner.estimate
+
+    The keys are those of a scenario. `pose` is where the robot begins, and `samples` are labels of others that may be
+    wrong. A planner can be pickled: it goes on where it was.
+    """
+
+    def __init__(self, file: tuple[str, str, str] | None = None, /, **keys: Any) -> None:
+        from boundary_planner.mission import _plain
+
+        self._begun = (json.dumps(keys, default=_plain), file)
+        self._native = _native.Planner(self._begun)
+        self._ask()
+
+    def _ask(self) -> None:
+        self._answer: dict[str, Any] = json.loads(self._native.answer())
+
+    def plan(self) -> Motion | None:
+        """The next motion; None when the mission has ended. The same until `observe` is told of it."""
+        answer = self._answer["next"]
+        if answer is None:
+            return None
+        pose = {key: answer[key] for key in ("x", "z", "lat", "lon", "heading") if key in answer}
+        why = self._answer["why"] or {"chance": None, "bits": None}
+        return Motion(pose, answer["turn"], answer["drive"], answer["label"], why["chance"], why["bits"])
+
+    def observe(
+        self,
+        pose: Mapping[str, float],
+        label: int | None,
+        on_the_way: Iterable[Mapping[str, float]] = (),
+    ) -> None:
+        """Take in where the motion ended, and the label there: -1, 0 on the boundary, 1, or None if none was read.
+
+        A label that contradicts what is known is a `BoundaryError`, and the planner stays as it was.
+        """
+        arrival = {
+            "pose": {key: float(value) for key, value in pose.items()},
+            "label": None if label is None else int(label),
+            "on_the_way": [dict(it) for it in on_the_way],
+        }
+        try:
+            self._native.arrive(json.dumps(arrival))
+        except _native.BoundaryError:
+            self.__setstate__(self.__getstate__())
+            raise
+        self._ask()
+
+    @property
+    def stop(self) -> str | None:
+        """Why the mission has ended, as in the trace; None before."""
+        return self._answer["stop"]
+
+    @property
+    def estimate(self) -> dict[str, Any] | None:
+        """The recommended line: `slope`, `intercept`, and `angle` in degrees."""
+        return self._answer["known"]["estimates"].get("centre")
+
+    @property
+    def known(self) -> dict[str, Any]:
+        """What is known: `bits`, `slope_arcs`, `intercept`, `estimates`."""
+        return self._answer["known"]
+
+    @property
+    def answer(self) -> dict[str, Any]:
+        """All of it, as docs/reference/next.md says."""
+        return self._answer
+
+    def probability(self, places: ArrayLike) -> NDArray[np.float64]:
+        """The chance that the robot's sensor reads +1 at each place, by what is known now."""
+        from boundary_planner.mission import _places
+
+        return self._native.chance(_places(places))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"begun": self._begun, "state": self._answer["state"]}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._begun = state["begun"]
+        self._native = _native.Planner.again(self._begun, json.dumps(state["state"]))
+        self._ask()
