@@ -21,7 +21,7 @@ use crate::fly::socket::Socket;
 use crate::mission::definition::Mission;
 use crate::mission::scenario;
 use crate::mission::strict::wrong;
-use crate::output::file::prepare;
+use crate::output::file::prepare_all;
 use crate::output::interruption;
 use crate::output::notes::warn;
 use crate::world::World;
@@ -89,7 +89,7 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
         let failure = failure.map(|it| (anyhow!("{}: {it}", run.name()), FAILED));
         return Ok(Done { text: sent::table(control.link().sent()), failure });
     };
-    let outputs = prepare(&[run.input()], run.outputs())?;
+    let outputs = prepare_all(&[run.input()], &run.outputs())?;
     let socket = Socket::open(address, system).context("--mavlink")?;
     interruption::defer();
     let mut control = Control::new(socket, pilot, interruption::deferred);

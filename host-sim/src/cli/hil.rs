@@ -15,7 +15,7 @@ use crate::hil::firmware::{Firmware, STM32F405};
 use crate::hil::flight::{self, Chip, Timings};
 use crate::hil::player::Player;
 use crate::hil::qemu::usual_machine;
-use crate::output::file::{place_for, prepare, temporary};
+use crate::output::file::{place_for, prepare_all, temporary};
 use crate::output::notes::announce;
 
 /// The speed of the firmware's serial lines, bits per second.
@@ -123,29 +123,20 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
         Some(device) => ("the port", Path::new(device)),
         None => ("the firmware", emulated.elf()),
     };
-    let [trace, figure, candidates, report, mcap, map, geojson] = args.run.outputs();
-    let (timing, log) = (args.timing.as_deref(), args.log.as_deref());
-    let growing = trace.1.filter(|_| args.resume);
+    let growing = args.run.trace.as_deref().filter(|_| args.resume);
     if let Some(path) = growing
         && place_for(path)?.is_stream()
     {
         bail!("{}: found a stream, expected a file with --resume", path.display());
     }
-    let asked = [
-        trace,
-        figure,
-        candidates,
-        report,
-        mcap,
-        map,
-        geojson,
-        ("--timing", timing),
-        ("--log", log),
-    ];
-    let prepared = prepare(&[args.run.input(), (chip, board)], asked)?;
-    let [trace, figure, candidates, report, mcap, map, geojson, timing, log] = prepared;
-    // Its place will do, and it grows beside it.
-    let trace = trace.filter(|_| !args.resume);
+    let own = [("--timing", args.timing.as_deref()), ("--log", args.log.as_deref())];
+    let asked = [&own[..], &args.run.outputs()].concat();
+    let mut outputs = prepare_all(&[args.run.input(), (chip, board)], &asked)?.into_iter();
+    let [timing, log] = [outputs.next().flatten(), outputs.next().flatten()];
+    // The place of a trace that grows will do: it grows beside it.
+    let outputs = asked[own.len()..].iter().zip(outputs);
+    let outputs =
+        outputs.map(|((flag, _), it)| it.filter(|_| !(args.resume && *flag == "--trace")));
     // The emulator writes its log as it goes; it comes to its place when it is whole.
     let log = log.map(|log| Ok::<_, anyhow::Error>((log, temporary(&env::temp_dir())?)));
     let log = log.transpose().context("expected a place for temporary files")?;
@@ -188,7 +179,6 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     let (mut played, failure) = played?;
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
-    let outputs = [trace, figure, candidates, report, mcap, map, geojson];
     let mut text = args.run.tell(outputs, &played.recording)?;
     match (played.logbook.take(), &failure) {
         (Some(logbook), None) => logbook.complete(&played.recording.results.end)?,

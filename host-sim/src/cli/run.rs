@@ -14,7 +14,7 @@ use crate::mission::recording::Recording;
 use crate::mission::scenario::{self, Overrides};
 use crate::mission::setting::Setting;
 use crate::mission::trace;
-use crate::output::file::{Output, prepare};
+use crate::output::file::{Output, prepare, prepare_all};
 use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
 use crate::report::page::{Chapter, Page};
@@ -59,6 +59,9 @@ pub(crate) struct Run {
     /// Write track, samples and what was found here, in an area from a map
     #[arg(long, value_name = "FILE.geojson")]
     pub(crate) geojson: Option<PathBuf>,
+    /// The same as tracks and waypoints, for chart plotters and phones
+    #[arg(long, value_name = "FILE.gpx")]
+    pub(crate) gpx: Option<PathBuf>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -87,7 +90,7 @@ pub(crate) struct RunArgs {
         value_name = "PLANNER,...",
         value_delimiter = ',',
         requires = "report",
-        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map", "geojson"]
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map", "geojson", "gpx"]
     )]
     compare: Vec<Algorithm>,
 }
@@ -99,10 +102,36 @@ pub(crate) fn run(args: &RunArgs) -> Result<Done> {
         return run.compare(compare);
     }
     let mission = run.mission()?;
-    let outputs = prepare(&[run.input()], run.outputs())?;
+    let outputs = prepare_all(&[run.input()], &run.outputs())?;
     let (recording, refusal) = Recording::until_refusal(&mission);
     let text = run.tell(outputs, &recording)?;
     Ok(run.done(text, refusal))
+}
+
+/// Where a file goes that a mission writes.
+type Place = fn(&Run) -> &Option<PathBuf>;
+
+/// What is in it; nothing if the mission has no such thing.
+type Make = fn(&Run, &Recording) -> Result<Option<Vec<u8>>>;
+
+/// The files that a mission writes, each with its flag.
+const OUTPUTS: [(&str, Place, Make); 8] = [
+    ("--trace", |run| &run.trace, |_, it| text_file(trace::lines(&it.results))),
+    ("--figure", |run| &run.figure, |run, it| text_file(Picture::of(&run.title(), it).svg())),
+    (
+        "--candidates",
+        |run| &run.candidates,
+        |run, it| Ok(Picture::of_candidates(&run.title(), it).map(|it| it.svg().into())),
+    ),
+    ("--report", |run| &run.report, |run, it| text_file(page(&run.title(), &[it]))),
+    ("--mcap", |run| &run.mcap, |_, it| log::mcap(it).map(Some)),
+    ("--map", |run| &run.map, |_, it| text_file(Pieces::of(&it.results).csv("step", None, &[])?)),
+    ("--geojson", |run| &run.geojson, |_, it| text_file(on_map::geojson(it)?)),
+    ("--gpx", |run| &run.gpx, |run, it| text_file(on_map::gpx(&run.title(), it)?)),
+];
+
+fn text_file(text: String) -> Result<Option<Vec<u8>>> {
+    Ok(Some(text.into()))
 }
 
 /// A page of missions that were flown from the same start, under the scenario's name.
@@ -142,8 +171,10 @@ impl Run {
             let planner = mission.algorithm.name();
             bail!("--map: found algorithm {planner}, expected track, which maps a front");
         }
-        if self.geojson.is_some() && mission.lake.is_none() {
-            bail!("--geojson: found an area in metres, expected one from a map (area.geojson)");
+        let of_map = [("--geojson", self.geojson.is_some()), ("--gpx", self.gpx.is_some())];
+        let asked = of_map.into_iter().find(|(_, is_asked)| *is_asked && mission.lake.is_none());
+        if let Some((flag, _)) = asked {
+            bail!("{flag}: found an area in metres, expected one from a map (area.geojson)");
         }
         mission.warn(&self.name());
         Ok(mission)
@@ -200,50 +231,27 @@ impl Run {
         ("the scenario", &self.scenario)
     }
 
-    pub(crate) fn outputs(&self) -> [(&'static str, Option<&Path>); 7] {
-        [
-            ("--trace", self.trace.as_deref()),
-            ("--figure", self.figure.as_deref()),
-            ("--candidates", self.candidates.as_deref()),
-            ("--report", self.report.as_deref()),
-            ("--mcap", self.mcap.as_deref()),
-            ("--map", self.map.as_deref()),
-            ("--geojson", self.geojson.as_deref()),
-        ]
+    pub(crate) fn outputs(&self) -> Vec<(&'static str, Option<&Path>)> {
+        OUTPUTS.iter().map(|(flag, path, _)| (*flag, path(self).as_deref())).collect()
     }
 
-    /// Writes the trace, the figures and the page that were asked for; what to print.
+    /// Writes the files that were asked for, in the order of [`outputs`](Self::outputs); what to print.
     pub(crate) fn tell(
         &self,
-        outputs: [Option<Output>; 7],
+        outputs: impl IntoIterator<Item = Option<Output>>,
         recording: &Recording,
     ) -> Result<String> {
-        let [trace, figure, candidates, report, mcap, map, geojson] = outputs;
-        let name = self.name();
-        let title = self.title();
-        let lines = trace::lines(&recording.results);
-        // All is drawn before anything is written.
-        let svg = figure.as_ref().map(|_| Picture::of(&title, recording).svg());
-        let fewest = candidates.as_ref().and_then(|_| Picture::of_candidates(&title, recording));
-        let fewest = fewest.map(|picture| picture.svg());
-        let page = report.as_ref().map(|_| page(&title, &[recording]));
-        let log = mcap.as_ref().map(|_| log::mcap(recording)).transpose()?;
-        let pieces = || Pieces::of(&recording.results);
-        let vertices = map.as_ref().map(|_| pieces().csv("step", None, &[])).transpose()?;
-        let features = geojson.as_ref().map(|_| on_map::geojson(recording)).transpose()?;
-        for (output, content) in [
-            (geojson, features.as_ref().map(String::as_bytes)),
-            (trace, Some(lines.as_bytes())),
-            (figure, svg.as_ref().map(String::as_bytes)),
-            (candidates, fewest.as_ref().map(String::as_bytes)),
-            (report, page.as_ref().map(String::as_bytes)),
-            (mcap, log.as_deref()),
-            (map, vertices.as_ref().map(String::as_bytes)),
-        ] {
-            if let (Some(output), Some(content)) = (output, content) {
+        let asked = outputs.into_iter().zip(OUTPUTS);
+        let made = asked.filter_map(|(output, (.., make))| Some((output?, make(self, recording))));
+        // All is made before anything is written.
+        for (output, content) in
+            made.map(|(it, made)| Ok((it, made?))).collect::<Result<Vec<_>>>()?
+        {
+            if let Some(content) = content {
                 output.write(content)?;
             }
         }
+        let (name, lines) = (self.name(), trace::lines(&recording.results));
         Ok(match self.format {
             Format::Text => text::mission(&name, &recording.results),
             Format::Json => lines,

@@ -446,6 +446,9 @@ fn boundary(record: &BoundaryRecord) -> String {
         BoundaryRecord { raster: Some(file), threshold: Some(threshold), .. } => {
             format!("the raster {}, +1 from {threshold} up", plain::name(file))
         }
+        BoundaryRecord { geojson: Some(file), .. } => {
+            format!("the polygons of {}, +1 inside", plain::name(file))
+        }
         BoundaryRecord { drift: Some([offset, turn]), .. } => {
             format!(
                 "{base} at the start; each motion moves it by {offset} m and turns it by {turn} deg"

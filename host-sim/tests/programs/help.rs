@@ -12,9 +12,9 @@ fn help_has_examples_that_are_understood() {
         let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
         assert!(help.starts_with("Examples:"), "{}: {help:?}", command.get_name());
         for line in help.lines().filter_map(|line| line.strip_prefix("  host-sim")) {
-            // What comes after a wide gap explains it; what comes after > is the shell's.
+            // What comes after a wide gap explains it; what comes after > or < is the shell's.
             let words = line.split("  ").next().unwrap_or_default();
-            let words = words.split(" > ").next().unwrap_or_default().split_whitespace();
+            let words = words.split(['>', '<']).next().unwrap_or_default().split_whitespace();
             let words = std::iter::once("host-sim").chain(words);
             let parsed = cli.clone().try_get_matches_from(words);
             assert!(parsed.is_ok(), "host-sim{line}: {}", parsed.unwrap_err());

@@ -134,3 +134,46 @@ fn a_chain_of_requests_is_a_run() {
     }
     assert!(ended.len() >= 4, "{ended:?}");
 }
+
+/// A state says itself whether it was changed. Digits beyond what a number keeps change nothing.
+#[test]
+fn a_spoilt_state_is_refused() {
+    let scenario = json!({
+        "algorithm": "lookahead",
+        "oracle": [{ "x": 2, "z": 1, "label": -1 }, { "x": 2, "z": 8, "label": 1 }, { "x": 18, "z": 5, "label": -1 }],
+        "noise": { "p": 0.9, "trusted_radius": 0.0 },
+    });
+    let ask = |request: &Value| answer(&request.to_string(), None);
+    let read = |answer: String| serde_json::from_str::<Value>(&answer).expect("JSON");
+    let mut request = scenario.clone();
+    for label in [-1, 1, 1] {
+        let answered = read(ask(&request).expect("an answer"));
+        let pose = ["x", "z", "heading"].map(|key| (key.to_owned(), answered["next"][key].clone()));
+        request = scenario.clone();
+        request["pose"] = Value::Object(pose.into_iter().collect());
+        request["label"] = json!(label);
+        request["state"] = answered["state"].clone();
+    }
+    let right = ask(&request).expect("an answer");
+    let state = request["state"].to_string();
+    let mut refused = 0;
+    for at in 0..state.len() {
+        for other in ["", "1", "7", "-", "a", "\"", "]", "0.5"] {
+            let spoilt = format!("{}{other}{}", &state[..at], &state[at + 1..]);
+            let Ok(value) = serde_json::from_str(&spoilt) else { continue };
+            request["state"] = value;
+            match ask(&request) {
+                Ok(answer) => assert_eq!(answer, right, "{spoilt}"),
+                Err(why) => {
+                    assert!(format!("{why:#}").starts_with("the request: state: "), "{why:#}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(refused > 500, "{refused}");
+    request["state"] = serde_json::from_str(&state).expect("JSON");
+    request["noise"]["p"] = json!(0.8);
+    let why = format!("{:#}", ask(&request).expect_err("another scenario"));
+    assert!(why.contains("state: found another one"), "{why}");
+}

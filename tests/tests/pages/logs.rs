@@ -11,7 +11,8 @@ use std::{env, fs};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::{flat, log, trace};
+use host_sim::mission::trace;
+use host_sim::report::{flat, log};
 use serde_json::{Map, Value};
 use tests::build;
 

@@ -51,25 +51,26 @@ impl Lake {
     /// # Errors
     /// Names the file, what was found and what was expected.
     pub(crate) fn read(path: &Path, name: &str, crs: Option<&Crs>, cells: u16) -> Result<Self> {
-        let text = fs::read(path).map_err(|error| {
-            anyhow!(
-                "found {} as {name}, expected the name of one, beside the scenario",
-                kind::unread(&error)
-            )
-        })?;
-        let found: Vec<Vec<Vec<[f64; 2]>>> = polygons(name, &text, crs.is_none())?;
+        let found = read_polygons(path, name, crs.is_none())?;
         let all: Vec<_> = found.iter().flatten().flatten().copied().collect();
         let is_geographic = crs.is_none();
         let frame = Frame::of(&all, is_geographic, None, crs)
             .map_err(|error| anyhow!("{name}: {error}"))?;
-        let place = |at: &[f64; 2]| Ok(Point2::from(frame.site(*at)?));
-        let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(place).collect::<Result<Ring>>();
-        let rings = |rings: &Vec<Vec<_>>| rings.iter().map(ring).collect::<Result<Vec<_>>>();
+        let rings = |rings: &Vec<Vec<_>>| placed(&frame, rings);
         let polygons = found.iter().map(rings).collect::<Result<Vec<_>>>();
         let polygons = polygons.map_err(|error| anyhow!("{name}: {error}"))?;
         let (chart, lost, ground) =
             charted(&polygons, cells).map_err(|error| anyhow!("{name}: {error}"))?;
         Ok(Self { name: name.to_owned(), frame, polygons, chart, ground, lost })
+    }
+
+    /// The rings of all polygons of another file for the same map.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub(crate) fn rings_of(&self, path: &Path, name: &str) -> Result<Vec<Ring>> {
+        let polygons = read_polygons(path, name, self.frame.is_geographic())?;
+        placed(&self.frame, &polygons.concat()).map_err(|error| anyhow!("{name}: {error}"))
     }
 
     /// What it is, in words: a line.
@@ -90,11 +91,32 @@ impl Lake {
     }
 }
 
+/// Rings on the lattice.
+fn placed(frame: &Frame, rings: &[Vec<[f64; 2]>]) -> Result<Vec<Ring>> {
+    let place = |at: &[f64; 2]| Ok(Point2::from(frame.site(*at)?));
+    rings.iter().map(|ring| ring.iter().map(place).collect()).collect()
+}
+
+/// The polygons of a file, by the positions of their rings: latitude and longitude, or x and z.
+///
+/// # Errors
+/// Names the file, what was found and what was expected.
+pub(crate) fn read_polygons(
+    path: &Path,
+    name: &str,
+    is_geographic: bool,
+) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
+    let text = fs::read(path).map_err(|error| {
+        let expected = "the name of one, beside the scenario";
+        anyhow!("found {} as {name}, expected {expected}", kind::unread(&error))
+    })?;
+    polygons(name, &text, is_geographic)
+}
+
 fn metres(units: u32) -> f64 {
     f64::from(units) / f64::from(UNITS_PER_METRE)
 }
 
-/// The polygons of a file, by the positions of their rings: latitude and longitude, or x and z.
 fn polygons(name: &str, text: &[u8], is_geographic: bool) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
     let mut file: Value = serde_json::from_slice(text)
         .map_err(|error| anyhow!("{name}:{}: expected GeoJSON: {error}", error.line()))?;

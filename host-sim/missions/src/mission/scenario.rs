@@ -505,7 +505,10 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<M
     let steps_name = if overrides.steps.is_some() { "--steps" } else { "steps" };
     let room = Room::of(weighs, &asking, file.audits());
     check_steps(steps_name, steps, given_count, room)?;
-    let world = file.truth.as_ref().map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, folder))?;
+    let world = file
+        .truth
+        .as_ref()
+        .map_or(Ok(World::UNKNOWN), |it| it.0.world(&area, lake.as_deref(), folder))?;
     let reads = if algorithm.seeks_line() { given } else { given_of_front };
     let given = file.doubting(&area, reads(&file.oracle, &bounds, &terrain, &world))?;
     if algorithm == Algorithm::Chords {

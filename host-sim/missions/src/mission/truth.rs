@@ -3,12 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Result, anyhow, bail};
 use nalgebra::Point2;
 use planner_core::Line;
 use planner_core::link::message::MissionArea;
 use serde::Deserialize;
 
+use crate::mission::lake::{self, Lake};
 use crate::mission::strict::{Numbers, Table, wrong};
 use crate::output::kind;
 use crate::output::notes::mention;
@@ -21,7 +22,9 @@ use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
 use crate::world::raster::Raster;
 use crate::world::raster_file;
+use crate::world::shapes::Shapes;
 use crate::world::sine::Sine;
+use crate::world::way::Way;
 
 /// Lengths are up to so many metres, so that no sum of theirs overflows.
 const FURTHEST: f64 = 1e6;
@@ -51,6 +54,8 @@ pub(crate) struct TruthTable {
     raster: Option<String>,
     /// Of a raster
     threshold: Option<f64>,
+    /// Polygons of a file beside the scenario, +1 inside, in the coordinates of the area
+    geojson: Option<String>,
     /// The boundary moves with every motion: a line by `[metres along its normal, degrees]`, any other by `[x, z]`, metres
     drift: Option<Numbers<2>>,
 }
@@ -65,7 +70,12 @@ impl TruthTable {
     ///
     /// # Errors
     /// Names the field, what was found and what was expected.
-    pub(crate) fn world(&self, area: &MissionArea, folder: &Path) -> Result<World> {
+    pub(crate) fn world(
+        &self,
+        area: &MissionArea,
+        lake: Option<&Lake>,
+        folder: &Path,
+    ) -> Result<World> {
         let area = Polygon::from(*area);
         self.check_keys()?;
         let rectangle = around(area.0.iter().copied()).unwrap_or_default();
@@ -77,6 +87,13 @@ impl TruthTable {
             Box::new(polyline(points)?)
         } else if let Some(Table(coast)) = &self.coast {
             Box::new(self::coast(*coast, rectangle)?)
+        } else if let Some(name) = &self.geojson {
+            let rings = match lake {
+                Some(lake) => lake.rings_of(&folder.join(name), name),
+                None => metres(&folder.join(name), name),
+            };
+            let rings = rings.map_err(|why| anyhow!("truth.geojson: {why}"))?;
+            Box::new(Shapes::new(name.clone(), rings))
         } else if let (Some(name), Some(threshold)) = (&self.raster, self.threshold) {
             if !threshold.is_finite() {
                 return wrong("truth.threshold", threshold, "a number");
@@ -129,6 +146,7 @@ impl TruthTable {
             ("polyline", self.polyline.is_some()),
             ("coast", self.coast.is_some()),
             ("raster", has_raster),
+            ("geojson", self.geojson.is_some()),
             ("a line", has_base && self.sine.is_none()),
         ];
         let found: Vec<_> =
@@ -179,6 +197,20 @@ impl TruthTable {
             Self { slope: Some(slope), intercept: Some(intercept), ..Self::default() }.line()?
         };
         Ok(Sine { base, height, length, phase })
+    }
+}
+
+/// The rings of all polygons of a file in the metres of the area.
+fn metres(path: &Path, name: &str) -> Result<Vec<Way>> {
+    let rings = lake::read_polygons(path, name, false)?.concat();
+    let rings: Vec<Way> =
+        rings.into_iter().map(|it| it.into_iter().map(Point2::from).collect()).collect();
+    let is_far = |at: &&Point2<f64>| !(at.x.abs() <= FURTHEST && at.y.abs() <= FURTHEST);
+    match rings.iter().flatten().find(is_far) {
+        Some(at) => {
+            bail!("{name}: found the position ({}, {}), expected metres, up to 1e6", at.x, at.y)
+        }
+        None => Ok(rings),
     }
 }
 

@@ -67,22 +67,34 @@ enum Destination {
     Stream(File),
 }
 
+/// As [`prepare_all`], of so many outputs.
+///
+/// # Errors
+/// As that.
+pub fn prepare<const N: usize>(
+    inputs: &[(&str, &Path)],
+    asked: [(&str, Option<&Path>); N],
+) -> Result<[Option<Output>; N]> {
+    let mut outputs = prepare_all(inputs, &asked)?.into_iter();
+    Ok([(); N].map(|()| outputs.next().flatten()))
+}
+
 /// Prepares everything that a command writes. A place that cannot be written to is found before any work is done. The
 /// result is `None` for an output that was not asked for. Inputs and outputs come with their names for messages.
 ///
 /// # Errors
 /// Names the place that cannot be written to, or that is an input or another output as well.
-pub fn prepare<const N: usize>(
+pub fn prepare_all(
     inputs: &[(&str, &Path)],
-    asked: [(&str, Option<&Path>); N],
-) -> Result<[Option<Output>; N]> {
+    asked: &[(&str, Option<&Path>)],
+) -> Result<Vec<Option<Output>>> {
     // An input that is not there is for its reader to complain of.
     let mut taken: Vec<(String, Place)> = inputs
         .iter()
         .filter_map(|(what, path)| Some(((*what).to_owned(), Place::of(path).ok()?)))
         .collect();
-    let mut places: [Option<Place>; N] = [const { None }; N];
-    for ((what, path), place) in asked.iter().zip(&mut places) {
+    let mut places = vec![None; asked.len()];
+    for (&(what, path), place) in asked.iter().zip(&mut places) {
         let Some(path) = path else { continue };
         let found = place_for(path)?;
         if let Some((other, _)) = taken.iter().find(|(_, other)| other.is(&found)) {
@@ -93,13 +105,13 @@ pub fn prepare<const N: usize>(
         *place = Some(found);
     }
     // Opening a pipe waits for its reader, so everything else is checked first.
-    let mut outputs = [const { None }; N];
-    for (((_, path), place), output) in asked.iter().zip(places).zip(&mut outputs) {
-        if let (Some(path), Some(place)) = (path, place) {
-            *output = Some(Output::at(path, &place).map_err(|error| refusal(path, &error))?);
-        }
-    }
-    Ok(outputs)
+    let output = |((_, path), place): (&(&str, Option<&Path>), Option<Place>)| {
+        let opened = path
+            .zip(place)
+            .map(|(path, place)| Output::at(path, &place).map_err(|error| refusal(path, &error)));
+        opened.transpose()
+    };
+    asked.iter().zip(places).map(output).collect()
 }
 
 /// Where a path leads, if a file can be written there.

@@ -46,6 +46,8 @@ pub struct BoundaryRecord {
     pub raster: Option<String>,
     /// From this value up the label is +1.
     pub threshold: Option<f64>,
+    /// The file of polygons.
+    pub geojson: Option<String>,
 }
 
 /// A coast that is drawn at random, metres.

@@ -20,6 +20,7 @@ pub mod polyline;
 pub mod raster;
 pub mod raster_file;
 pub mod robot;
+pub mod shapes;
 pub mod sine;
 pub mod survey;
 pub mod way;
