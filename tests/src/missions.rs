@@ -3,10 +3,10 @@
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::mission::names::FanName;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::motion::car::{self};
-use planner_core::motion::unicycle::Grid;
+use planner_core::CarShape;
 use planner_core::{Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Tolerance, Unicycle};
 
 use crate::{ensemble, terrain};
@@ -29,7 +29,7 @@ pub fn by_turns(seed: u64, number: u64, steps: u32) -> Mission {
         (_, false) => Algorithm::Scc,
     };
     let mut mission = standard_field::standard(seed, number, algorithm, steps);
-    mission.vehicle = if number % 8 < 6 { Grid::Paper } else { Grid::Fine }.into();
+    mission.vehicle = if number % 8 < 6 { FanName::Paper } else { FanName::Fine }.into();
     if !is_even {
         mission.noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.5) });
     }
@@ -81,7 +81,7 @@ pub fn of_any_vehicle(number: u64, steps: u32) -> Mission {
     let made = match number % 3 {
         0 => steps_of(1.2).map(AnyVehicle::Unicycle),
         1 => steps_of(0.349).and_then(Boat::new).map(AnyVehicle::Boat),
-        _ => Car::new(car::Shape {
+        _ => Car::new(CarShape {
             radius_mm: 1_500,
             shortest_mm: 400,
             turn_step_urad: TURN_STEP_URAD,

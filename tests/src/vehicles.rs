@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use planner_core::motion::car::Shape;
+use planner_core::CarShape;
 use planner_core::{Boat, Car, Unicycle};
 
 /// A unicycle with so many microradians between its directions, and motions of up to `reach_mm`.
@@ -27,6 +27,6 @@ pub fn boat(turn_step_urad: u32, sharpest: f64, reach_mm: u32) -> Boat {
 /// As [`unicycle`].
 pub fn car(turn_step_urad: u32, radius_mm: u32, reach_mm: u32) -> Car {
     let (speeds, speed_step_mm) = (21, reach_mm / 20);
-    let shape = Shape { radius_mm, shortest_mm: 500, turn_step_urad, speeds, speed_step_mm };
+    let shape = CarShape { radius_mm, shortest_mm: 500, turn_step_urad, speeds, speed_step_mm };
     Car::new(shape).expect("a car")
 }

@@ -5,7 +5,6 @@ use std::slice;
 use anyhow::{Error, Result, bail};
 use clap::builder::ArgPredicate;
 use clap::{Args, ValueEnum};
-use planner_core::motion::unicycle::Grid;
 use planner_core::{AnyReliability, AnyVehicle, Area, Reliability, UnknownReliability};
 
 use crate::campaign::ensemble::Campaign;
@@ -260,8 +259,8 @@ impl CampaignFlags {
     }
 
     /// How finely a planner's vehicle turns.
-    fn grid(&self, planner: Algorithm) -> Grid {
-        self.fan.map_or(planner.grid(), Into::into)
+    fn grid(&self, planner: Algorithm) -> FanName {
+        self.fan.unwrap_or(planner.grid())
     }
 
     /// Whether every flag that was given has a meaning for a planner. `p` is how often labels are true.

@@ -4,13 +4,13 @@ use std::mem;
 
 use anyhow::{Context as _, Result, bail};
 use nalgebra::Point2;
-use planner_core::motion::unicycle::Grid;
 use planner_core::{
     AnyReliability, AnyVehicle, Area, Curve, Front, FrontStretch, Guard, Heading, Label, Noise,
     OneLabel, Planner as _, Pose, Reading, Sample, Site, Tolerance, Track, Trust as _, Unicycle,
 };
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::names::FanName;
 use crate::mission::results::{PTold, Start, StepResult};
 use crate::mission::vehicle::Source;
 use crate::replay::answer;
@@ -183,8 +183,8 @@ impl RecordedTrack {
         let named = || format!("{}: --front: expected the trace of a mission", file.name);
         let area = area().with_context(named)?;
         let vehicle = match &start.vehicle {
-            Some(table) => table.vehicle(Source::File, Algorithm::Track, false, Grid::Fine),
-            None => Ok(Grid::Fine.into()),
+            Some(table) => table.vehicle(Source::File, Algorithm::Track, false, FanName::Fine),
+            None => Ok(FanName::Fine.into()),
         };
         let given = &file.samples[..start.oracle.len()];
         let seeking = start.seek.unwrap_or_default().told().with_context(named)?;

@@ -13,7 +13,7 @@ use crate::belief::cells::{CellView, Kept, Moments, Trapezoid, Trapezoids, measu
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, UnitVector, cross};
 use crate::geometry::lattice::{Site, Vector};
-use crate::geometry::local_line::{Frame, LocalLine};
+use crate::geometry::local_line::{LocalAxes, LocalLine};
 
 /// The three estimates; `None` where one does not exist.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -99,7 +99,7 @@ pub fn bisector(samples: &[Sample]) -> Option<LocalLine> {
     let towards = |v: Vector, way: i64| if (way < 0) == (crossed < 0) { v } else { v.reversed() };
     let (d, e) = (towards(d, on_d), towards(e, on_e));
     // The line that bisects the angle has the difference of the two unit vectors as its normal.
-    let frame = Frame::new(n1, d);
+    let frame = LocalAxes::new(n1, d);
     let [cos, sin] = frame.seen(e, UnitVector::of(e));
     let normal = match () {
         // The same, without the difference of like numbers.

@@ -6,7 +6,7 @@ use crate::geometry::value::ValueError;
 
 /// Axes about a site: along a direction, and to its left.
 #[derive(Clone, Copy)]
-pub(crate) struct Frame {
+pub(crate) struct LocalAxes {
     about: Site,
     along: Vector,
     unit: UnitVector,
@@ -80,7 +80,7 @@ impl TryFrom<(Site, [i32; 2], [f32; 2])> for LocalLine {
     }
 }
 
-impl Frame {
+impl LocalAxes {
     pub(crate) fn new(about: Site, along: Vector) -> Self {
         Self { about, along, unit: UnitVector::of(along) }
     }

@@ -298,8 +298,8 @@ mod tests {
     use crate::geometry::local_line::LocalLine;
     use crate::link::frame::{Decoder, Envelope, FRAME, Frame};
     use crate::motion::action::{Action, Control};
-    use crate::motion::any_vehicle::Shape;
-    use crate::motion::car;
+    use crate::motion::any_vehicle::VehicleShape;
+    use crate::motion::car::CarShape;
     use crate::planner::Stage;
     use crate::planner::options::{Crossing, Following};
     use crate::planner::scc::Policy;
@@ -356,7 +356,7 @@ mod tests {
                 tolerance: Tolerance::NONE,
             },
             keep_outs: Some(u8::MAX),
-            vehicle: Shape::Car(car::Shape {
+            vehicle: VehicleShape::Car(CarShape {
                 radius_mm: u32::MAX,
                 shortest_mm: u32::MAX,
                 turn_step_urad: u32::MAX,

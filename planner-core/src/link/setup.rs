@@ -10,7 +10,7 @@ use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
 use crate::geometry::area::Area;
-use crate::motion::any_vehicle::Shape;
+use crate::motion::any_vehicle::VehicleShape;
 use crate::motion::dynamics::Pose;
 use crate::planner::lookahead::DrivingPrice;
 use crate::planner::options::{Crossing, Following, Options};
@@ -64,7 +64,7 @@ pub struct Setup {
     pub keep_outs: Option<u8>,
     /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle. It may
     /// support a single kind.
-    pub vehicle: Shape,
+    pub vehicle: VehicleShape,
     /// The capacity asked for.
     pub capacity: Capacity,
     /// Steps at most.
@@ -141,9 +141,9 @@ fn once<'de, D: Deserializer<'de>, T: Deserialize<'de>>(reader: D) -> Result<T, 
 fn maybe<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<(Noise, Prior)>, D::Error> {
     /// Read by the same function.
     #[derive(Deserialize)]
-    struct Known(#[serde(deserialize_with = "once")] Noise);
-    let known = Option::<(Known, Prior)>::deserialize(reader)?;
-    Ok(known.map(|(Known(noise), prior)| (noise, prior)))
+    struct ReadOnce(#[serde(deserialize_with = "once")] Noise);
+    let known = Option::<(ReadOnce, Prior)>::deserialize(reader)?;
+    Ok(known.map(|(ReadOnce(noise), prior)| (noise, prior)))
 }
 
 /// Capacity for a mission's memory.

@@ -4,9 +4,9 @@ use crate::geometry::heading::Heading;
 use crate::geometry::lattice::{LatticeError, Vector};
 use crate::motion::action::{Action, ActionGrid, Control, GridError};
 use crate::motion::boat::Boat;
-use crate::motion::car::{self, Car};
+use crate::motion::car::{Car, CarShape};
 use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, RoomError, Side, TurningCircle};
-use crate::motion::unicycle::{self, Grid, Unicycle};
+use crate::motion::unicycle::{Unicycle, UnicycleShape};
 
 /// A vehicle of one of three kinds. A program that knows its vehicle is smaller and faster with that type.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,13 +25,13 @@ pub enum AnyVehicle {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Vehicle"))]
-pub enum Shape {
+pub enum VehicleShape {
     /// Of a [`Unicycle`].
-    Unicycle(unicycle::Shape),
+    Unicycle(UnicycleShape),
     /// Of a [`Boat`], by its steps.
-    Boat(unicycle::Shape),
+    Boat(UnicycleShape),
     /// Of a [`Car`].
-    Car(car::Shape),
+    Car(CarShape),
 }
 
 /// Why a shape gives no usable vehicle.
@@ -60,44 +60,38 @@ impl core::fmt::Display for ShapeError {
 
 impl core::error::Error for ShapeError {}
 
-impl TryFrom<Shape> for AnyVehicle {
+impl TryFrom<VehicleShape> for AnyVehicle {
     type Error = ShapeError;
 
-    fn try_from(shape: Shape) -> Result<Self, ShapeError> {
+    fn try_from(shape: VehicleShape) -> Result<Self, ShapeError> {
         match shape {
-            Shape::Unicycle(shape) => Unicycle::of(shape).map(Self::Unicycle),
-            Shape::Boat(steps) => Unicycle::of(steps).and_then(Boat::new).map(Self::Boat),
-            Shape::Car(shape) => Car::new(shape).map(Self::Car),
+            VehicleShape::Unicycle(shape) => Unicycle::of(shape).map(Self::Unicycle),
+            VehicleShape::Boat(steps) => Unicycle::of(steps).and_then(Boat::new).map(Self::Boat),
+            VehicleShape::Car(shape) => Car::new(shape).map(Self::Car),
         }
         .map_err(ShapeError::Grid)
     }
 }
 
 /// For a program that has no other vehicle.
-impl TryFrom<Shape> for Unicycle {
+impl TryFrom<VehicleShape> for Unicycle {
     type Error = ShapeError;
 
-    fn try_from(shape: Shape) -> Result<Self, ShapeError> {
+    fn try_from(shape: VehicleShape) -> Result<Self, ShapeError> {
         match shape {
-            Shape::Unicycle(shape) => Self::of(shape).map_err(ShapeError::Grid),
-            Shape::Boat(_) | Shape::Car(_) => Err(ShapeError::Kind),
+            VehicleShape::Unicycle(shape) => Self::of(shape).map_err(ShapeError::Grid),
+            VehicleShape::Boat(_) | VehicleShape::Car(_) => Err(ShapeError::Kind),
         }
     }
 }
 
-impl From<AnyVehicle> for Shape {
+impl From<AnyVehicle> for VehicleShape {
     fn from(vehicle: AnyVehicle) -> Self {
         match vehicle {
             AnyVehicle::Unicycle(it) => Self::Unicycle(it.shape()),
             AnyVehicle::Boat(it) => Self::Boat(it.steps().shape()),
             AnyVehicle::Car(it) => Self::Car(it.shape()),
         }
-    }
-}
-
-impl From<Grid> for AnyVehicle {
-    fn from(grid: Grid) -> Self {
-        Self::Unicycle(grid.into())
     }
 }
 

@@ -25,7 +25,7 @@ use crate::motion::unicycle::{STEP_PER_URAD, UNITS_PER_URAD, square_mrad2};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Car {
     grid: ActionGrid,
-    shape: Shape,
+    shape: CarShape,
     /// The slowest speed that moves.
     slowest: u16,
     /// Rays to one side of the one ahead.
@@ -46,7 +46,7 @@ pub struct Car {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Circle"))]
-pub struct Shape {
+pub struct CarShape {
     /// Radius of the turning circle, millimetres.
     pub radius_mm: u32,
     /// The shortest motion, millimetres.
@@ -80,8 +80,8 @@ impl Car {
     ///
     /// # Errors
     /// [`GridError`].
-    pub fn new(shape: Shape) -> Result<Self, GridError> {
-        let Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm } = shape;
+    pub fn new(shape: CarShape) -> Result<Self, GridError> {
+        let CarShape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm } = shape;
         let grid = ActionGrid::new(1, speeds, speed_step_mm)?;
         if turn_step_urad == 0 || turn_step_urad > 785_398 {
             return Err(GridError::Turn);
@@ -111,12 +111,12 @@ impl Car {
     }
 
     /// What it can do.
-    pub const fn shape(&self) -> Shape {
+    pub const fn shape(&self) -> CarShape {
         self.shape
     }
 
     fn find_circle(mut self, step_mm: NonZeroU32) -> Result<Self, GridError> {
-        let Shape { radius_mm, speeds, .. } = self.shape;
+        let CarShape { radius_mm, speeds, .. } = self.shape;
         let (sin, _) = sin_cos(Self::CIRCLING);
         let chord_mm = (2 * u64::from(radius_mm) * sin as u64) >> 29;
         let speed = (chord_mm / NonZeroU64::from(step_mm)) as u32;

@@ -28,7 +28,7 @@ pub struct Unicycle {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename = "Steps"))]
-pub struct Shape {
+pub struct UnicycleShape {
     /// The angle from one turn to the next, microradians.
     pub turn_step_urad: u32,
     /// The sharpest turn to one side.
@@ -37,26 +37,6 @@ pub struct Shape {
     pub speeds: u16,
     /// From one speed to the next, millimetres per unit time.
     pub speed_step_mm: u32,
-}
-
-/// The action sets of the unicycle that have a name.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub enum Grid {
-    /// [`Unicycle::paper`].
-    #[default]
-    Paper,
-    /// [`Unicycle::fine`].
-    Fine,
-}
-
-impl From<Grid> for Unicycle {
-    fn from(grid: Grid) -> Self {
-        match grid {
-            Grid::Paper => Self::paper(),
-            Grid::Fine => Self::fine(),
-        }
-    }
 }
 
 impl Unicycle {
@@ -76,15 +56,15 @@ impl Unicycle {
         let is_angle = sharpest_rad >= 0.0 && sharpest_rad <= core::f64::consts::PI;
         let turn = if is_angle { sharpest_rad } else { 0.0 };
         let sharpest = Angle((turn * 1e6 * UNITS_PER_URAD + 0.5) as u32);
-        Self::of(Shape { turn_step_urad, sharpest, speeds, speed_step_mm })
+        Self::of(UnicycleShape { turn_step_urad, sharpest, speeds, speed_step_mm })
     }
 
     /// A unicycle of this shape: as [`new`](Self::new), in integers alone.
     ///
     /// # Errors
     /// [`GridError`].
-    pub const fn of(shape: Shape) -> Result<Self, GridError> {
-        let Shape { turn_step_urad, sharpest, speeds, speed_step_mm } = shape;
+    pub const fn of(shape: UnicycleShape) -> Result<Self, GridError> {
+        let UnicycleShape { turn_step_urad, sharpest, speeds, speed_step_mm } = shape;
         let makes_sense = turn_step_urad > 0
             && turn_step_urad <= MOST_URAD
             && sharpest.0 >= Angle::of_radians(1e-3).0
@@ -138,8 +118,8 @@ impl Unicycle {
     }
 
     /// What it can do.
-    pub const fn shape(&self) -> Shape {
-        Shape {
+    pub const fn shape(&self) -> UnicycleShape {
+        UnicycleShape {
             turn_step_urad: self.step_urad,
             sharpest: self.sharpest,
             speeds: self.grid.speeds(),

@@ -23,7 +23,7 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE};
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::search::motions::Leg;
-use crate::search::places::Places;
+use crate::search::places::EndSearch;
 
 /// How far ahead it looks, reaches.
 const WAYS: [f32; 11] = [0.0, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.95, 0.98, 1.0];
@@ -191,7 +191,7 @@ pub(crate) fn towards<D: Dynamics, G: Workspace>(
         is_better
     };
     let mut places =
-        Places { dynamics, area, pose, share, find, best: None, examined: 0, most: ENDS };
+        EndSearch { dynamics, area, pose, share, find, best: None, examined: 0, most: ENDS };
     for speed in [speed, speed.saturating_sub(1)].into_iter().filter(|it| *it > 0) {
         let _ = places.circle(speed);
     }

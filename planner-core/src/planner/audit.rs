@@ -20,7 +20,7 @@
 //! cannot be visited is left out.
 
 use crate::belief::noise::Reliability;
-use crate::belief::predictions::{Heard, PLACES, PredictiveBelief, Verdict, Verdicts};
+use crate::belief::predictions::{AuditLabel, PLACES, PredictiveBelief, Verdict, Verdicts};
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::geometry::approximate::distance;
 use crate::geometry::area::Area;
@@ -72,9 +72,9 @@ pub struct Audit<V> {
     verdicts: V,
     /// The label that refuted the model.
     refuted: Option<Sample>,
-    now: Course,
+    now: AuditCourse,
     /// The course with the motion that was planned last, and whether that ends at its place.
-    next: Course,
+    next: AuditCourse,
     arrives: bool,
 }
 
@@ -82,7 +82,7 @@ pub struct Audit<V> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Course {
+struct AuditCourse {
     /// A bit for each place.
     settled: u8,
     /// The place, and which of its [`ALONG`].
@@ -95,7 +95,7 @@ struct Course {
     missed: u8,
 }
 
-impl Course {
+impl AuditCourse {
     const NONE: Self = Self { settled: 0, to: None, motions: 0, left: UNKNOWN, missed: 0 };
 
     /// The same with its place left.
@@ -128,8 +128,8 @@ impl<V: Verdicts> Audit<V> {
         disagreed: 0,
         verdicts: V::NONE,
         refuted: None,
-        now: Course::NONE,
-        next: Course::NONE,
+        now: AuditCourse::NONE,
+        next: AuditCourse::NONE,
         arrives: false,
     };
 
@@ -169,14 +169,14 @@ impl<V: Verdicts> Audit<V> {
         let grid = dynamics.grid();
         let circle = dynamics.turning_circles(pose).map_or(0, |[left, _]| left.radius);
         let least = grid.step_units().max(NEAR_CIRCLE * circle as f32);
-        let places = Places::of(estimate, area.bounds(), least)?;
+        let places = AuditPlaces::of(estimate, area.bounds(), least)?;
         let reach = grid.longest_units();
         let most = TURNS.saturating_add((2.0 * places.chord.length() / reach) as u16);
         let mut course = self.now;
         while course.missed < MISSES && self.agreed + self.disagreed < LABELS {
             let (place, first) = match course.to {
                 Some(_) if course.motions >= most => {
-                    course = Course { missed: course.missed + 1, ..course.settle() };
+                    course = AuditCourse { missed: course.missed + 1, ..course.settle() };
                     continue;
                 }
                 Some(to) => to,
@@ -194,13 +194,13 @@ impl<V: Verdicts> Audit<V> {
                     && (turn > first || !course.strays(found.motions))
                 {
                     let (to, motions) = (Some((place, turn)), course.motions + 1);
-                    self.next = Course { to, motions, left: found.motions, ..course };
+                    self.next = AuditCourse { to, motions, left: found.motions, ..course };
                     self.arrives = found.arrives;
                     return Some(found);
                 }
             }
             let missed = course.missed + u8::from(course.motions > 0);
-            course = Course { to: Some((place, 0)), missed, ..course }.settle();
+            course = AuditCourse { to: Some((place, 0)), missed, ..course }.settle();
         }
         None
     }
@@ -239,7 +239,7 @@ impl<V: Verdicts> Audit<V> {
     pub(crate) fn pass(&mut self) {
         self.now = self.next;
         if core::mem::take(&mut self.arrives) {
-            self.now = Course { missed: 0, ..self.now.settle() };
+            self.now = AuditCourse { missed: 0, ..self.now.settle() };
             self.next = self.now;
         }
     }
@@ -253,7 +253,7 @@ impl<V: Verdicts> Audit<V> {
         level: u32,
     ) {
         let place = self.next.to.map_or(0, |(place, _)| usize::from(place));
-        let left = Course { missed: 0, ..self.next.leave() };
+        let left = AuditCourse { missed: 0, ..self.next.leave() };
         self.pass();
         if let Some((label, reliability, reading)) = seen {
             let agrees = reading == Reading::Side(label);
@@ -263,7 +263,7 @@ impl<V: Verdicts> Audit<V> {
             } else {
                 self.disagreed += 1;
             }
-            match self.verdicts.observe(Heard { place, is_last, agrees, reliability, level }) {
+            match self.verdicts.observe(AuditLabel { place, is_last, agrees, reliability, level }) {
                 Verdict::Agrees => {}
                 Verdict::Open => self.now = left,
                 Verdict::Refutes => self.refuted = Some(Sample { site, label: -label }),
@@ -274,13 +274,13 @@ impl<V: Verdicts> Audit<V> {
 }
 
 /// The chord of the estimate, and how near to it an audit goes.
-struct Places {
+struct AuditPlaces {
     chord: Chord,
     /// How near places are to uncertain ground, and motions end to them; lattice units.
     near: f32,
 }
 
-impl Places {
+impl AuditPlaces {
     /// The places by an estimate, no nearer than `least`.
     fn of(estimate: LocalLine, area: Area, least: f32) -> Option<Self> {
         let usual = NEAR * area.mean_side();
@@ -342,13 +342,16 @@ mod tests {
 
     #[test]
     fn bytes_of_no_audit_are_told_from_one() {
-        let of =
-            |course: Course, agreed: u16| Audit { now: course, agreed, ..Audit::<Decisive>::NONE };
-        assert!(of(Course { to: Some((5, 4)), ..Course::NONE }, LABELS).is_possible());
+        let of = |course: AuditCourse, agreed: u16| Audit {
+            now: course,
+            agreed,
+            ..Audit::<Decisive>::NONE
+        };
+        assert!(of(AuditCourse { to: Some((5, 4)), ..AuditCourse::NONE }, LABELS).is_possible());
         for to in [(6, 0), (200, 1)] {
-            assert!(!of(Course { to: Some(to), ..Course::NONE }, 0).is_possible());
+            assert!(!of(AuditCourse { to: Some(to), ..AuditCourse::NONE }, 0).is_possible());
         }
-        assert!(!of(Course { motions: u16::MAX, ..Course::NONE }, 0).is_possible());
-        assert!(!of(Course::NONE, LABELS + 1).is_possible());
+        assert!(!of(AuditCourse { motions: u16::MAX, ..AuditCourse::NONE }, 0).is_possible());
+        assert!(!of(AuditCourse::NONE, LABELS + 1).is_possible());
     }
 }

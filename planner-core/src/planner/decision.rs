@@ -6,7 +6,7 @@ use crate::belief::sample::Label;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Side};
-use crate::search::lookout::{Circles, ENOUGH, Lookout, Prospect, Sought, few};
+use crate::search::lookout::{Circles, ENOUGH, LookFor, Lookout, Prospect, few};
 
 /// Circles on which the second step may end.
 const SECOND_CIRCLES: Circles = Circles::Even(3);
@@ -106,7 +106,7 @@ fn second<D: Dynamics, P: Prediction, G: Workspace>(
         prediction,
         pose,
         (SECOND_CIRCLES, lookout.usual),
-        &mut Sought::Worth(&mut most, ground),
+        &mut LookFor::Worth(&mut most, ground),
     );
     most
 }

@@ -137,9 +137,9 @@ impl Far {
             Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
         }
         let most = best.as_ref().map_or(f32::NEG_INFINITY, |best| best.worth);
-        let mut places = Places::NONE;
+        let mut places = FarPlaces::NONE;
         let mut consider = |site: Site| {
-            places.add(Place { site, worth: worth(site) });
+            places.add(FarPlace { site, worth: worth(site) });
         };
         match journey.now {
             Rest::None => sites(predictor, &chord, outlook.deviation())
@@ -150,7 +150,7 @@ impl Far {
         }
         journey.next = journey.now;
         let mut effort = Effort::within(&lookout.area, LOOKS);
-        for Place { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
+        for FarPlace { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
             let tells = |site| tells(belief, predictor, lookout, site, WORTHWHILE);
             let to = (site, nearness(lookout));
             let leg = journey.go((lookout.dynamics, &lookout.area), pose, to, tells, &mut effort);
@@ -211,21 +211,21 @@ fn tells<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
 
 /// A place beyond the ends of one motion, and what it is worth.
 #[derive(Clone, Copy)]
-struct Place {
+struct FarPlace {
     site: Site,
     worth: f32,
 }
 
 /// The best places, the best first.
-struct Places {
-    list: [Place; TRIES],
+struct FarPlaces {
+    list: [FarPlace; TRIES],
 }
 
-impl Places {
+impl FarPlaces {
     const NONE: Self =
-        Self { list: [Place { site: Site::ORIGIN, worth: f32::NEG_INFINITY }; TRIES] };
+        Self { list: [FarPlace { site: Site::ORIGIN, worth: f32::NEG_INFINITY }; TRIES] };
 
-    fn add(&mut self, mut new: Place) {
+    fn add(&mut self, mut new: FarPlace) {
         for place in &mut self.list {
             if new.worth > place.worth {
                 core::mem::swap(place, &mut new);

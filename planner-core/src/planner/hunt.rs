@@ -19,8 +19,8 @@ use crate::geometry::lattice::{Site, UNITS_PER_METRE, Vector};
 use crate::geometry::mark::Mark;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::quest::Phase;
-use crate::planner::scout::{Best, Ends, FAINT, LOOKED_AT, NEAR, Scout};
+use crate::planner::quest::QuestPhase;
+use crate::planner::scout::{BestEnd, Ends, FAINT, LOOKED_AT, NEAR, Scout};
 use crate::planner::setup::{SetupError, aimed_for_by};
 use crate::planner::snapshot::Kind;
 use crate::planner::{Plan, Stage, StopReason};
@@ -77,7 +77,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
         self.lines.give(points);
         self.scout.quest.know(points);
         if self.lines.is_near() {
-            self.scout.quest.phase = Phase::Follow;
+            self.scout.quest.phase = QuestPhase::Follow;
         }
     }
 
@@ -99,9 +99,9 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
     /// Where the boundary is known best; `None` as long as it is not found, and where it is lost.
     pub(crate) fn found(&self) -> Option<Waist> {
         let is_sure = match self.scout.quest.phase {
-            Phase::Search => false,
-            Phase::Close(_) => self.lines.share_nowhere() < ABSENT,
-            Phase::Follow => true,
+            QuestPhase::Search => false,
+            QuestPhase::Close(_) => self.lines.share_nowhere() < ABSENT,
+            QuestPhase::Follow => true,
         };
         self.lines.found(self.scout.width()).filter(|_| is_sure)
     }
@@ -155,7 +155,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
         pose: Pose,
         ends: Ends,
         worth: impl Fn(Pose, f32) -> Option<f32>,
-    ) -> (Option<Best>, u32) {
+    ) -> (Option<BestEnd>, u32) {
         self.scout.best_end(pose, ends, |end| self.lines.share_above(end.site), worth)
     }
 
@@ -164,7 +164,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
         if let Some(plan) = self.scout.come_home(pose) {
             return plan;
         }
-        if self.scout.quest.phase != Phase::Search {
+        if self.scout.quest.phase != QuestPhase::Search {
             if let Some(plan) = self.close(pose) {
                 return plan;
             }
@@ -205,26 +205,27 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
             self.scout.hear(pose.site, reading);
         }
         if let Some(reading) = reading
-            && self.scout.quest.phase != Phase::Search
+            && self.scout.quest.phase != QuestPhase::Search
         {
             self.lines.observe_within(pose.site, reading, tolerance)?;
         }
         self.scout.silence.observe(reading.is_some());
         self.scout.quest.moved(pose.site, reading.is_some());
         match self.scout.quest.phase {
-            Phase::Search => self.take_lead(pose.site),
-            Phase::Close(left) => {
+            QuestPhase::Search => self.take_lead(pose.site),
+            QuestPhase::Close(left) => {
                 self.scout.quest.phase = match left.checked_sub(1) {
-                    _ if self.found().is_some() => Phase::Follow,
-                    Some(left) => Phase::Close(left),
-                    None => Phase::Search,
+                    _ if self.found().is_some() => QuestPhase::Follow,
+                    Some(left) => QuestPhase::Close(left),
+                    None => QuestPhase::Search,
                 };
-                if self.scout.quest.phase == Phase::Search || self.lines.share_nowhere() > GIVEN_UP
+                if self.scout.quest.phase == QuestPhase::Search
+                    || self.lines.share_nowhere() > GIVEN_UP
                 {
                     self.scout.quest.search_on();
                 }
             }
-            Phase::Follow => {}
+            QuestPhase::Follow => {}
         }
         Ok(())
     }
@@ -252,7 +253,7 @@ impl<D: Dynamics, const K: usize, const M: usize, G: Workspace> Hunt<D, K, M, G>
         if reading == Reading::Boundary {
             return Ok(false);
         }
-        let is_kept = self.scout.quest.phase == Phase::Search
+        let is_kept = self.scout.quest.phase == QuestPhase::Search
             || self.lines.observe_on_the_way(site, reading)?;
         if is_kept {
             self.scout.hear(site, reading);

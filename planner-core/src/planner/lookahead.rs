@@ -519,11 +519,11 @@ mod tests {
 
     /// A line through the middle of the area, and the oracle's points about it.
     #[derive(Clone, Copy)]
-    struct Field {
+    struct TiltedField {
         angle: f64,
     }
 
-    impl Field {
+    impl TiltedField {
         fn site(self, along: f64, off: f64) -> Site {
             let (sin, cos) = libm::sincos(self.angle);
             at(10.0 + along * cos - off * sin, 10.0 + along * sin + off * cos)
@@ -581,8 +581,8 @@ mod tests {
         }
     }
 
-    fn fields() -> impl Iterator<Item = Field> {
-        (0..24).map(|number| Field { angle: 0.27 * f64::from(number) })
+    fn fields() -> impl Iterator<Item = TiltedField> {
+        (0..24).map(|number| TiltedField { angle: 0.27 * f64::from(number) })
     }
 
     /// The budget is kept, and the worth of what is decided never falls as it grows.

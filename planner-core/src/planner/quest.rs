@@ -12,7 +12,7 @@
 //! - **Follow**: the planner knows the boundary, or was told about where it is.
 
 use crate::belief::curve::nearest_pair;
-use crate::belief::field::{Field, FieldMemory, MOST_PATCHES, Seeking, Sought};
+use crate::belief::field::{BoundaryOdds, Field, FieldMemory, MOST_PATCHES, Seeking};
 use crate::belief::sample::{Label, Sample};
 use crate::geometry::approximate::{METRE, distance, sqrt};
 use crate::geometry::hull::Extent;
@@ -49,7 +49,7 @@ const BITS: f32 = 40.0;
 /// How near the boundary is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum Phase {
+pub(crate) enum QuestPhase {
     Search,
     /// It is given up after so many steps.
     Close(u16),
@@ -62,7 +62,7 @@ pub(crate) enum Phase {
 pub struct QuestMemory {
     field: FieldMemory,
     route: Route,
-    phase: Phase,
+    phase: QuestPhase,
     is_fresh: bool,
     is_stuck: bool,
     heard: Option<Site>,
@@ -103,9 +103,9 @@ fn apart([x, z]: [f32; 2], [a, b]: [f32; 2]) -> f32 {
 #[derive(Clone, Debug)]
 pub(crate) struct Quest {
     field: Field,
-    sought: Sought,
+    sought: BoundaryOdds,
     route: Route,
-    pub(crate) phase: Phase,
+    pub(crate) phase: QuestPhase,
     /// Whether a label or a motion came since the route was made better.
     is_fresh: bool,
     /// Whether a plan found no way to any corner since.
@@ -134,9 +134,9 @@ pub(crate) struct Lead {
 impl Quest {
     pub(crate) const NONE: Self = Self {
         field: Field::NONE,
-        sought: Sought { discs: 0.0, half_planes: 0.0, heaviest: (None, 0.0) },
+        sought: BoundaryOdds { discs: 0.0, half_planes: 0.0, heaviest: (None, 0.0) },
         route: Route::NONE,
-        phase: Phase::Search,
+        phase: QuestPhase::Search,
         is_fresh: true,
         is_stuck: false,
         heard: None,
@@ -163,7 +163,7 @@ impl Quest {
         self.approach = Approach::NONE;
         self.mapped.clear();
         (self.is_fresh, self.is_stuck) = (true, false);
-        self.phase = if is_near { Phase::Follow } else { Phase::Search };
+        self.phase = if is_near { QuestPhase::Follow } else { QuestPhase::Search };
         self.sought = self.field.sought();
         Ok(())
     }
@@ -187,7 +187,7 @@ impl Quest {
 
     /// Takes in a label. Along a front, and where a patch is mapped, it tells nothing of other patches.
     pub(crate) fn hear(&mut self, site: Site, label: Label) {
-        if self.phase == Phase::Follow {
+        if self.phase == QuestPhase::Follow {
             self.field.memory.recent.push(site, label);
         } else if !self.mapped.iter().any(|it| it.holds(site)) {
             self.field.observe(site, label);
@@ -199,7 +199,7 @@ impl Quest {
     /// A motion has ended, and its labels are taken in. The route stays until a label comes: a robot that turns on the
     /// spot would turn to and fro.
     pub(crate) fn moved(&mut self, site: Site, has_label: bool) {
-        if self.phase == Phase::Search {
+        if self.phase == QuestPhase::Search {
             self.sought = self.field.sought();
         }
         self.come(site);
@@ -267,12 +267,12 @@ impl Quest {
     /// The grid takes over, for labels that carry so many bits each.
     pub(crate) fn close_in(&mut self, bits: f32) {
         let bits = if bits > 1e-3 { bits } else { 1e-3 };
-        self.phase = Phase::Close((BITS / bits) as u16);
+        self.phase = QuestPhase::Close((BITS / bits) as u16);
     }
 
     /// The grid has found nothing: the search goes on.
     pub(crate) fn search_on(&mut self) {
-        (self.phase, self.news) = (Phase::Search, 0);
+        (self.phase, self.news) = (QuestPhase::Search, 0);
         self.sought = self.field.sought();
     }
 
@@ -287,7 +287,7 @@ impl Quest {
     /// A boundary is found: the last labels within so many lattice units of a place tell nothing of others, if several are
     /// sought.
     pub(crate) fn follow(&mut self, place: Site, within: f32) {
-        self.phase = Phase::Follow;
+        self.phase = QuestPhase::Follow;
         if self.field.seeking().most_patches() == 1 {
             return;
         }

@@ -22,7 +22,7 @@ use crate::search::course::Course;
 use crate::search::errand::{Errand, errand, errand_in_steps};
 use crate::search::motions::Leg;
 use crate::search::objective::{Effort, LOOKS};
-use crate::search::places::Places;
+use crate::search::places::EndSearch;
 use crate::search::recovery::Found;
 
 /// Places that a plan looks at, at most: ends of motions, and places beyond them.
@@ -84,7 +84,7 @@ pub(crate) struct Ends {
 
 /// The best end of a motion so far, and its worth.
 #[derive(Clone, Copy)]
-pub(crate) struct Best {
+pub(crate) struct BestEnd {
     pub(crate) leg: Leg,
     pub(crate) worth: f32,
 }
@@ -179,19 +179,19 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
         Ends { circles, beside, most }: Ends,
         share: impl Fn(Pose) -> f32,
         worth: impl Fn(Pose, f32) -> Option<f32>,
-    ) -> (Option<Best>, u32) {
-        let mut best: Option<Best> = None;
+    ) -> (Option<BestEnd>, u32) {
+        let mut best: Option<BestEnd> = None;
         let find = |leg: Leg, share: f32| {
             let worth = worth(leg.1, share);
             let better = worth.filter(|it| best.is_none_or(|best| *it > best.worth));
             if let Some(worth) = better {
-                best = Some(Best { leg, worth });
+                best = Some(BestEnd { leg, worth });
             }
             better.is_some()
         };
         let (dynamics, area) = (&self.dynamics, &self.area);
         let mut places =
-            Places { dynamics, area, pose, share, find, best: None, examined: 0, most };
+            EndSearch { dynamics, area, pose, share, find, best: None, examined: 0, most };
         for k in (1..=circles).rev() {
             let speed = u32::from(self.fastest) * u32::from(k) / u32::from(circles);
             if speed > 0 {
@@ -214,7 +214,7 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
         &mut self,
         pose: Pose,
         (stage, places): (Stage, [Option<Site>; 2]),
-        best: Option<(Best, Stage)>,
+        best: Option<(BestEnd, Stage)>,
         (least, examined): (f32, u32),
         tells: impl Fn(Site) -> f32,
     ) -> Option<Plan> {
@@ -230,7 +230,7 @@ impl<D: Dynamics, G: Workspace> Scout<D, G> {
                 let tells = tells(leg.1.site) > least || self.silence.is_long();
                 (leg, stage, leg.1.site != pose.site && tells)
             }
-            (None, Some((Best { leg, .. }, stage))) => (leg, stage, true),
+            (None, Some((BestEnd { leg, .. }, stage))) => (leg, stage, true),
             (None, None) => return None,
         };
         let found = Found::of(None, leg);

@@ -41,7 +41,7 @@ const NEAR: u32 = Angle::of_radians(0.001).0;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-enum Turn {
+enum LastTurn {
     /// There was no motion yet, or a label came.
     #[default]
     None,
@@ -63,8 +63,8 @@ pub struct Silence {
     /// Where it was before the last of them.
     spot: Option<Site>,
     /// The motion before, and the one that was planned last.
-    last: Turn,
-    next: Turn,
+    last: LastTurn,
+    next: LastTurn,
     /// The way that the motion before was part of, and the same of the one that was planned last.
     course: Course,
     next_course: Course,
@@ -80,8 +80,8 @@ impl Silence {
         turned: 0,
         on_the_spot: 0,
         spot: None,
-        last: Turn::None,
-        next: Turn::None,
+        last: LastTurn::None,
+        next: LastTurn::None,
         course: Course::NONE,
         next_course: Course::NONE,
         dull: 0,
@@ -122,7 +122,7 @@ impl Silence {
         course: Course,
         dynamics: &D,
     ) -> Plan {
-        (self.next, self.next_course) = (Turn::None, course);
+        (self.next, self.next_course) = (LastTurn::None, course);
         if found.wants_label {
             return Plan::Move(found);
         }
@@ -136,7 +136,7 @@ impl Silence {
             // Its position errs: from here there may be more.
             self.on_the_spot = 0;
         }
-        self.next = if is_drive { Turn::Driving(by) } else { Turn::InPlace(by) };
+        self.next = if is_drive { LastTurn::Driving(by) } else { LastTurn::InPlace(by) };
         let after = self.after(self.next);
         let has_been_here = !is_drive && after.on_the_spot.unsigned_abs() < NEAR;
         if has_been_here || after.turned > MOST {
@@ -149,8 +149,8 @@ impl Silence {
     fn steady<D: Dynamics>(&self, pose: Pose, found: Motion, dynamics: &D) -> Motion {
         let by = found.target.heading.since(pose.heading).0 as i32;
         let side = match self.last {
-            Turn::InPlace(last) if last > 0 && by < 0 => Side::Left,
-            Turn::InPlace(last) if last < 0 && by > 0 => Side::Right,
+            LastTurn::InPlace(last) if last > 0 && by < 0 => Side::Left,
+            LastTurn::InPlace(last) if last < 0 && by > 0 => Side::Right,
             _ => return found,
         };
         let is_drive = found.target.site != pose.site;
@@ -179,17 +179,17 @@ impl Silence {
         *self = Self { dull, next_is_dull, ..Self::NONE };
     }
 
-    fn after(self, turn: Turn) -> Self {
+    fn after(self, turn: LastTurn) -> Self {
         let (by, on_the_spot) = match turn {
-            Turn::None => return Self { dull: self.dull, ..Self::NONE },
-            Turn::Driving(by) => (by, 0),
-            Turn::InPlace(by) => (by, self.on_the_spot.wrapping_add(by)),
+            LastTurn::None => return Self { dull: self.dull, ..Self::NONE },
+            LastTurn::Driving(by) => (by, 0),
+            LastTurn::InPlace(by) => (by, self.on_the_spot.wrapping_add(by)),
         };
         let by = by.unsigned_abs() >> 8;
         let by = if by > SLIGHT { by.max(LEAST) } else { by };
         let turned = self.turned.saturating_add(by);
         let (course, next_course) = (self.next_course, Course::NONE);
-        Self { turned, on_the_spot, last: turn, next: Turn::None, course, next_course, ..self }
+        Self { turned, on_the_spot, last: turn, next: LastTurn::None, course, next_course, ..self }
     }
 }
 

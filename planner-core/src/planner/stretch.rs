@@ -35,7 +35,7 @@ const CLOSER: u32 = 3;
 /// Where the front was so long ago.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Known {
+pub(crate) struct FormerFront {
     pub(crate) waist: Waist,
     pub(crate) age: f32,
 }
@@ -43,15 +43,15 @@ pub(crate) struct Known {
 /// A part of the stretch: where the front was when it was passed last, and on the way before.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-struct Part {
-    last: Option<Known>,
-    before: Option<Known>,
+struct StretchPart {
+    last: Option<FormerFront>,
+    before: Option<FormerFront>,
 }
 
 /// A stretch in so many parts. One of none is not watched.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Stretch<const N: usize> {
+pub(crate) struct WatchedStretch<const N: usize> {
     /// Metres.
     length: f32,
     /// Its middle, and the front's direction there when it was found.
@@ -60,7 +60,7 @@ pub(crate) struct Stretch<const N: usize> {
     at: (Site, f32),
     /// So much time has passed since it turned.
     turned: f32,
-    parts: heapless::Vec<Part, N, u8>,
+    parts: heapless::Vec<StretchPart, N, u8>,
 }
 
 /// How the front moves, metres in a unit of time, and the covariance of that.
@@ -72,18 +72,18 @@ struct Velocity {
 
 impl Velocity {
     /// Where the front is at a part, at the time of the last one, by both.
-    fn both(&self, Part { last, before }: Part) -> Option<Known> {
+    fn both(&self, StretchPart { last, before }: StretchPart) -> Option<FormerFront> {
         let (Some(last), Some(before)) = (last, before) else { return last };
-        let then = self.now(Known { age: before.age - last.age, ..before });
+        let then = self.now(FormerFront { age: before.age - last.age, ..before });
         let [a, b] = [last.waist, then].map(|it| it.deviation_beside(last.waist.site));
         let share = a * a / (a * a + b * b);
         let off = -share * then.aside(last.waist.site);
         let (site, deviation) = (aside(pose(last.waist), off), b * sqrt(ALIKE * share));
-        Some(Known { waist: Waist { site, deviation, ..last.waist }, ..last })
+        Some(FormerFront { waist: Waist { site, deviation, ..last.waist }, ..last })
     }
 
     /// Where the front is now that was somewhere.
-    fn now(&self, Known { waist, age }: Known) -> Waist {
+    fn now(&self, FormerFront { waist, age }: FormerFront) -> Waist {
         let Unit { x, z } = Unit::of(waist.heading);
         let [xx, xz, zz] = self.covariance;
         let moved = age * age * (z * z * xx - 2.0 * x * z * xz + x * x * zz);
@@ -92,7 +92,7 @@ impl Velocity {
     }
 }
 
-impl<const N: usize> Stretch<N> {
+impl<const N: usize> WatchedStretch<N> {
     /// Nothing is known of it yet.
     pub(crate) const fn new(length: f32) -> Self {
         let parts = heapless::Vec::new();
@@ -111,7 +111,7 @@ impl<const N: usize> Stretch<N> {
 
     /// Whether a mission can have made it.
     pub(crate) fn is_possible(&self) -> bool {
-        let is_known = |it: &Known| (0.0..1e9).contains(&it.age) && it.waist.deviation >= 0.0;
+        let is_known = |it: &FormerFront| (0.0..1e9).contains(&it.age) && it.waist.deviation >= 0.0;
         let known = self.parts.iter().flat_map(|it| [it.last, it.before]).flatten();
         self.at.1.abs() < 1e6 && known.into_iter().all(|it| is_known(&it))
     }
@@ -127,7 +127,7 @@ impl<const N: usize> Stretch<N> {
     pub(crate) fn observe(
         &mut self,
         site: Site,
-        (found, passed): (Option<Waist>, impl Iterator<Item = Known>),
+        (found, passed): (Option<Waist>, impl Iterator<Item = FormerFront>),
         (is_along, reach, pace): (bool, f32, f32),
     ) -> bool {
         self.turned += 1.0;
@@ -144,7 +144,7 @@ impl<const N: usize> Stretch<N> {
             from = it.waist.site;
             self.keep(along, it, &velocity);
         }
-        self.keep(self.at.1, Known { waist, age: 0.0 }, &velocity);
+        self.keep(self.at.1, FormerFront { waist, age: 0.0 }, &velocity);
         sign * self.at.1 > 0.5 * self.length
     }
 
@@ -166,14 +166,14 @@ impl<const N: usize> Stretch<N> {
         } else {
             self.middle = Some(pose(waist));
             self.parts.clear();
-            while self.parts.push(Part::default()).is_ok() {}
+            while self.parts.push(StretchPart::default()).is_ok() {}
             0.0
         };
         self.at = (site, along);
     }
 
     /// Keeps where the front was, so far along from the middle.
-    fn keep(&mut self, along: f32, known: Known, velocity: &Velocity) {
+    fn keep(&mut self, along: f32, known: FormerFront, velocity: &Velocity) {
         let number = (along / self.length + 0.5) * N as f32;
         let number = (number as usize).min(N.saturating_sub(1)); // what is negative becomes 0
         let Some(part) = self.parts.get_mut(number) else { return };
@@ -190,7 +190,7 @@ impl<const N: usize> Stretch<N> {
         }
         let prior = 1.0 / (MOVES * MOVES * pace * pace);
         let ([mut xx, mut xz, mut zz], mut sum) = ([prior, 0.0, prior], [0.0; 2]);
-        for Part { last, before } in &self.parts {
+        for StretchPart { last, before } in &self.parts {
             let (Some(last), Some(before)) = (last, before) else { continue };
             let time = before.age - last.age;
             let [a, b] = [last, before].map(|it| it.waist.deviation_beside(last.waist.site));
@@ -293,7 +293,7 @@ mod tests {
         let velocity = [0.02, 0.03];
         for (pace, most) in [(0.0, 0.05), (0.05, 0.11)] {
             let moved = |time: f64| velocity.map(|it| if pace > 0.0 { it * time } else { 0.0 });
-            let mut stretch = Stretch::<PARTS>::new(30.0);
+            let mut stretch = WatchedStretch::<PARTS>::new(30.0);
             let (mut along, mut way, mut turns) = (-STEP, STEP, 0);
             let mut time = 0.0;
             while turns < 5 {
@@ -327,7 +327,7 @@ mod tests {
 
     #[test]
     fn where_the_front_has_left_the_stretch_lies_anew() {
-        let mut stretch = Stretch::<PARTS>::new(30.0);
+        let mut stretch = WatchedStretch::<PARTS>::new(30.0);
         assert!(stretch.beside(at(0.0, 0.0), Heading(0), 0.0).is_none());
         for by in [0.0, 100.0] {
             let found = circle(0.0, [by, 0.0], 0.05);

@@ -43,12 +43,12 @@ use crate::planner::hunt::Hunt;
 use crate::planner::lap::Lap;
 use crate::planner::led::Led;
 use crate::planner::one_label::OneLabel;
-use crate::planner::quest::{Phase, QuestMemory};
-use crate::planner::scout::{Best, FAINT, Scout};
+use crate::planner::quest::{QuestMemory, QuestPhase};
+use crate::planner::scout::{BestEnd, FAINT, Scout};
 use crate::planner::setup::{Restart, SetupError, aimed_for};
 use crate::planner::silence::Silence;
 use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
-use crate::planner::stretch::{Known, PARTS, Stretch};
+use crate::planner::stretch::{FormerFront, PARTS, WatchedStretch};
 use crate::planner::turns::Turns;
 use crate::planner::{Plan, Planner, Stage, StopReason};
 
@@ -93,7 +93,7 @@ pub struct Track<D, G = Area, const N: usize = 0> {
     curve: Curve,
     lap: Lap,
     /// What it goes along to and fro, if it has a part.
-    stretch: Stretch<N>,
+    stretch: WatchedStretch<N>,
     /// The pose at the last label that was read at the end of a motion.
     heard_at: Option<Pose>,
     turns: Turns,
@@ -109,7 +109,7 @@ pub struct Track<D, G = Area, const N: usize = 0> {
 pub struct TrackMemory<const N: usize = 0> {
     silence: Silence,
     lap: Lap,
-    stretch: Stretch<N>,
+    stretch: WatchedStretch<N>,
     heard_at: Option<Pose>,
     turns: Turns,
     quest: QuestMemory,
@@ -214,7 +214,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
             front,
             curve: Curve::NONE,
             lap: Lap::NONE,
-            stretch: Stretch::new(stretch),
+            stretch: WatchedStretch::new(stretch),
             heard_at: None,
             turns: Turns::default(),
             ends: false,
@@ -276,7 +276,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         match nearest_pair(points) {
             Some(pair) if scout.is_bracket(pair) => {
                 scout.quest.know(points);
-                scout.quest.phase = Phase::Follow;
+                scout.quest.phase = QuestPhase::Follow;
                 self.curve.begin(pair, points);
             }
             Some(_) if !lines.is_certain() => self.hunt.know(points),
@@ -406,7 +406,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
     fn keep_stretch(&mut self, pose: Pose) {
         let (reach, found) = (self.hunt.scout.reach(), self.found());
         let is_along = !self.curve.is_flipped();
-        let then = |MapPlace { waist, age, .. }| Known { waist, age };
+        let then = |MapPlace { waist, age, .. }| FormerFront { waist, age };
         let passed = self.curve.places_then().map(then);
         let is_at_end = self.stretch.observe(
             pose.site,
@@ -449,7 +449,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         let place = audit.or_else(|| best_place((&scout.area, radius), curve, pose));
         let leg = place.and_then(|it| towards((&scout.dynamics, &scout.area, radius), pose, it));
         let (best, examined) = match leg {
-            Some((leg, examined)) => (Some(Best { leg, worth: 0.0 }), examined),
+            Some((leg, examined)) => (Some(BestEnd { leg, worth: 0.0 }), examined),
             None => (None, 0),
         };
         // Where no label tells anything it goes on along the front, no nearer than it can turn.
@@ -592,7 +592,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Restart for Track<D, G, N> {
     /// Begins again in the rectangle around its area. Nothing is told of how likely fronts are.
     fn restart(&mut self, given: &[Sample], _: Prior, noise: Noise) -> Result<(), SetupError> {
         (self.lap, self.heard_at, self.turns) = (Lap::NONE, None, Turns::default());
-        self.stretch = Stretch::new(self.stretch.length());
+        self.stretch = WatchedStretch::new(self.stretch.length());
         self.hunt.restart(noise, &[])?;
         self.begin_curve(noise.into());
         self.begin(self.hunt.scout.quest.seeking())?;

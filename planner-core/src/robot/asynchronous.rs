@@ -559,13 +559,13 @@ mod tests {
 
     #[test]
     fn a_pin_reads_the_same_whether_it_is_called_or_awaited() {
-        struct Wire(bool);
+        struct Level(bool);
 
-        impl embedded_hal::digital::ErrorType for Wire {
+        impl embedded_hal::digital::ErrorType for Level {
             type Error = Infallible;
         }
 
-        impl InputPin for Wire {
+        impl InputPin for Level {
             fn is_high(&mut self) -> Result<bool, Infallible> {
                 Ok(self.0)
             }
@@ -577,7 +577,7 @@ mod tests {
 
         for level in [true, false] {
             for high in [Label::Positive, Label::Negative] {
-                let mut sensor = PinSensor::new(Wire(level), high);
+                let mut sensor = PinSensor::new(Level(level), high);
                 let reading = Reading::Side(if level { high } else { -high });
                 assert_eq!(awaited(&mut sensor), Some(Ok(reading)));
                 assert_eq!(hal::LabelSensor::read(&mut sensor), Ok(reading));

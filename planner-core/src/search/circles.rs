@@ -84,7 +84,7 @@ impl Arm {
 }
 
 /// What is known of the end of a ray on a circle.
-enum Verdict {
+enum EndVerdict {
     /// It will do, and is the best so far.
     Best,
     /// It will not, and neither will the ends of rays within this turn.
@@ -94,7 +94,7 @@ enum Verdict {
 }
 
 /// The object of a search, and its results so far.
-struct Hunt<'r, R> {
+struct CircleSearch<'r, R> {
     rule: &'r R,
     /// Whether the best forbidden action is wanted.
     keeps_forbidden: bool,
@@ -127,7 +127,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
             Some(found) => found,
             None => Findings { best: None, best_forbidden: None },
         };
-        let mut hunt = Hunt { rule, keeps_forbidden: true, is_coarse: false, found };
+        let mut hunt = CircleSearch { rule, keeps_forbidden: true, is_coarse: false, found };
         self.look_around([self.pose.heading; 2], &mut hunt);
         hunt.found
     }
@@ -139,7 +139,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         rule: &R,
     ) -> Option<(Choice, Side)> {
         let found = Findings { best: None, best_forbidden: None };
-        let mut hunt = Hunt { rule, keeps_forbidden: false, is_coarse: false, found };
+        let mut hunt = CircleSearch { rule, keeps_forbidden: false, is_coarse: false, found };
         self.look_around(headings, &mut hunt);
         hunt.found.best.map(|(choice, (_, side))| (choice, side))
     }
@@ -147,7 +147,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
     fn look_around<R: DirectionRule>(
         &mut self,
         [left, right]: [Heading; 2],
-        hunt: &mut Hunt<'_, R>,
+        hunt: &mut CircleSearch<'_, R>,
     ) {
         let (grid, fan, site) = (self.dynamics.grid(), self.dynamics.fan(), self.pose.site);
         let spacing = NonZeroU32::new(fan.spacing.0).map_or(LEAST, |spacing| spacing.max(LEAST));
@@ -181,12 +181,17 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
 
     /// Finds the first ray of an arm whose end on a circle will do, if that is better than the best so
     /// far.
-    fn search_arm<R: DirectionRule>(&mut self, arm: &mut Arm, speed: u16, hunt: &mut Hunt<'_, R>) {
+    fn search_arm<R: DirectionRule>(
+        &mut self,
+        arm: &mut Arm,
+        speed: u16,
+        hunt: &mut CircleSearch<'_, R>,
+    ) {
         let (pose, side, spacing) = (arm.pose, arm.side, arm.spacing);
         let mut next = arm.first;
         while next < arm.end {
             match self.judge(pose, (next, side), speed, hunt) {
-                Verdict::Infeasible { turn, on_inner_circles_too } => {
+                EndVerdict::Infeasible { turn, on_inner_circles_too } => {
                     // Rays within the turn are like this one.
                     let after = next + turn / spacing + 1;
                     if on_inner_circles_too {
@@ -194,7 +199,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
                     }
                     next = after;
                 }
-                Verdict::Best | Verdict::NoneBetter => return,
+                EndVerdict::Best | EndVerdict::NoneBetter => return,
             }
         }
     }
@@ -205,26 +210,26 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         pose: Pose,
         rank: Rank,
         speed: u16,
-        hunt: &mut Hunt<'_, R>,
-    ) -> Verdict {
+        hunt: &mut CircleSearch<'_, R>,
+    ) -> EndVerdict {
         let (n, side) = rank;
         let heading = self.dynamics.heading(pose, side, n);
         if let Some(turn) = self.view.leaves_area_until(heading, side) {
-            return Verdict::Infeasible { turn, on_inner_circles_too: true };
+            return EndVerdict::Infeasible { turn, on_inner_circles_too: true };
         }
         if let Some((label, turn)) = self.view.certain_until(heading, side) {
             let on_inner_circles_too = self.view.own_label() == Certainty::Certain(label);
-            return Verdict::Infeasible { turn, on_inner_circles_too };
+            return EndVerdict::Infeasible { turn, on_inner_circles_too };
         }
         if let Some(turn) = self.view.outside_until(heading, side) {
-            return Verdict::Infeasible { turn, on_inner_circles_too: false };
+            return EndVerdict::Infeasible { turn, on_inner_circles_too: false };
         }
-        let Some(looks) = self.effort.looks.checked_sub(1) else { return Verdict::NoneBetter };
+        let Some(looks) = self.effort.looks.checked_sub(1) else { return EndVerdict::NoneBetter };
         self.effort.looks = looks;
         let (grid, ray) = (self.dynamics.grid(), self.dynamics.ray(pose, side, n));
         let objective = self.weight.objective(grid.reach_mm(speed), ray.turn_cost);
         if !is_better(objective, rank, hunt.found.best.as_ref()) {
-            return Verdict::NoneBetter;
+            return EndVerdict::NoneBetter;
         }
         let is_allowed = hunt.rule.admits(ray.step);
         let is_wanted = is_allowed
@@ -233,7 +238,7 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         if is_wanted {
             let target = match self.worthwhile_end(pose, &ray, speed, hunt.is_coarse) {
                 Ok(target) => target,
-                Err(turn) => return Verdict::Infeasible { turn, on_inner_circles_too: false },
+                Err(turn) => return EndVerdict::Infeasible { turn, on_inner_circles_too: false },
             };
             let action = grid.action(ray.index, speed);
             let choice = Some((Choice { action, target, objective }, rank));
@@ -241,10 +246,10 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
             *(if is_allowed { best } else { best_forbidden }) = choice;
         }
         if is_allowed {
-            return Verdict::Best;
+            return EndVerdict::Best;
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
-        Verdict::Infeasible { turn, on_inner_circles_too: true }
+        EndVerdict::Infeasible { turn, on_inner_circles_too: true }
     }
 
     /// The pose at a ray's end, if a label there can tell something. The end and the way there must lie inside the

@@ -19,7 +19,7 @@ pub(crate) struct Course {
     left: u8,
     /// The number of motions made so far to try from elsewhere.
     pub(crate) tries: u8,
-    pub(crate) far: Far,
+    pub(crate) far: Excursion,
 }
 
 /// A drive to open ground beyond reach. At most one is made between two labels, so that the robot does not drive back
@@ -27,7 +27,7 @@ pub(crate) struct Course {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) enum Far {
+pub(crate) enum Excursion {
     /// There was none.
     #[default]
     Not,
@@ -40,7 +40,7 @@ pub(crate) enum Far {
 impl Course {
     /// Nothing was begun since the last label.
     pub(crate) const NONE: Self =
-        Self { rest: [Action(0); REST], left: 0, tries: 0, far: Far::Not };
+        Self { rest: [Action(0); REST], left: 0, tries: 0, far: Excursion::Not };
 
     /// Begins another way.
     pub(crate) fn begin_way(&mut self, motions: impl DoubleEndedIterator<Item = Action>) {

@@ -24,18 +24,18 @@ pub(crate) struct SeenLine {
     pub(crate) height: f32,
     /// The heading of its normal.
     pub(crate) uphill: Heading,
-    crossing: Crossing,
+    crossing: CircleCrossing,
 }
 
 /// Where a circle around the agent crosses a line. Within the angle `above` of uphill, on either side, the circle is on
 /// the +1 side. Beyond the angle `below` it is on the other side. Between the two is the margin.
 #[derive(Clone, Copy, PartialEq, Eq)]
-struct Crossing {
+struct CircleCrossing {
     above: CoarseAngle,
     below: CoarseAngle,
 }
 
-impl Crossing {
+impl CircleCrossing {
     /// No circle has been looked at: nothing is certain.
     const UNKNOWN: Self = Self { above: CoarseAngle::NEVER, below: CoarseAngle::WHOLE_TURN };
     /// The circle is on the +1 side all around.
@@ -46,7 +46,7 @@ impl Crossing {
 
 impl SeenLine {
     pub(crate) const fn new(height: f32, uphill: Heading) -> Self {
-        Self { height, uphill, crossing: Crossing::UNKNOWN }
+        Self { height, uphill, crossing: CircleCrossing::UNKNOWN }
     }
 
     /// A line that bounds what is known, and its value where the agent is.
@@ -77,13 +77,13 @@ impl SeenLine {
     #[inline(always)]
     pub(crate) fn cross(&mut self, inverse_radius: f32, margin: f32) {
         let depth = -self.height * inverse_radius;
-        if self.height == 0.0 && self.crossing != Crossing::UNKNOWN {
+        if self.height == 0.0 && self.crossing != CircleCrossing::UNKNOWN {
             return; // a line through the agent crosses all circles alike
         }
         if depth.abs() < STEEP {
             let angle = acos(depth);
             let margin = CoarseAngle::radians_times(margin, 1.0 + 1.75 * (depth * depth)) + MARGIN;
-            self.crossing = Crossing { above: angle - margin, below: angle + margin };
+            self.crossing = CircleCrossing { above: angle - margin, below: angle + margin };
         } else {
             self.cross_wide(inverse_radius, margin);
         }
@@ -95,12 +95,12 @@ impl SeenLine {
         let depth = -self.height * inverse_radius;
         let (most, least) = (depth + margin, depth - margin);
         self.crossing = if most <= -1.0 {
-            Crossing::ALL_ABOVE
+            CircleCrossing::ALL_ABOVE
         } else if least >= 1.0 {
-            Crossing::ALL_BELOW
+            CircleCrossing::ALL_BELOW
         } else {
             let above = acos(most.clamp(-1.0, 1.0)) - MARGIN;
-            Crossing { above, below: acos(least.clamp(-1.0, 1.0)) + MARGIN }
+            CircleCrossing { above, below: acos(least.clamp(-1.0, 1.0)) + MARGIN }
         };
     }
 
@@ -113,7 +113,7 @@ impl SeenLine {
         heading: Heading,
         side: Side,
     ) -> Option<(Label, CoarseAngle)> {
-        let Crossing { above, below } = self.crossing;
+        let CircleCrossing { above, below } = self.crossing;
         let turned = CoarseAngle::between(self.uphill, heading);
         let turned = if side == Side::Left { turned } else { -turned };
         let away = turned.abs();

@@ -40,7 +40,7 @@ pub(crate) struct Errand {
 
 /// What drives lead to.
 #[derive(Clone, Copy)]
-struct Aim {
+struct Destination {
     site: Site,
     /// A drive that ends so near to it arrives, lattice units. None arrives at a waypoint.
     near: Option<f32>,
@@ -50,14 +50,14 @@ struct Aim {
 
 /// The best way so far: its first motion, and about how many motions it has.
 #[derive(Clone, Copy)]
-struct Best {
+struct BestErrand {
     errand: Errand,
     motions: f32,
 }
 
 /// Where a way has come to.
 #[derive(Clone, Copy)]
-struct Place {
+struct ErrandNode {
     pose: Pose,
     first: Option<Leg>,
     motions: u32,
@@ -85,8 +85,8 @@ pub(crate) fn errand_in_steps<D: Dynamics, G: Workspace>(
     let fastest = fastest.min(dynamics.grid().speeds().saturating_sub(1));
     let step = dynamics.grid().step_units();
     let aim = match detour::begin_to(place, (area, step), pose.site, effort)? {
-        Way::Straight(_) => Aim { site: place, near: Some(near), fastest },
-        Way::Round(way) => Aim { site: pose.site.step(way).ok()?, near: None, fastest },
+        Way::Straight(_) => Destination { site: place, near: Some(near), fastest },
+        Way::Round(way) => Destination { site: pose.site.step(way).ok()?, near: None, fastest },
     };
     let mut motions = Motions::new(dynamics, area, pose, *effort);
     let best = search(&mut motions, pose, aim);
@@ -124,10 +124,10 @@ pub(crate) fn motions_to<D: Dynamics>(dynamics: &D, pose: Pose, place: Site) -> 
 fn search<D: Dynamics, G: Workspace>(
     motions: &mut Motions<'_, '_, D, G>,
     pose: Pose,
-    aim: Aim,
-) -> Option<Best> {
+    aim: Destination,
+) -> Option<BestErrand> {
     let mut best = None;
-    let mut from = Place { pose, first: None, motions: 0 };
+    let mut from = ErrandNode { pose, first: None, motions: 0 };
     for _ in 0..=STRAIGHT {
         drive(motions, from, aim, &mut best);
         for side in [Side::Left, Side::Right] {
@@ -148,10 +148,10 @@ fn search<D: Dynamics, G: Workspace>(
 /// Turns to a side and looks at each place on the way, for a whole turn at most.
 fn turn<D: Dynamics, G: Workspace>(
     motions: &mut Motions<'_, '_, D, G>,
-    from: Place,
+    from: ErrandNode,
     side: Side,
-    aim: Aim,
-    best: &mut Option<Best>,
+    aim: Destination,
+    best: &mut Option<BestErrand>,
 ) {
     let (mut place, mut turned) = (from, 0_u32);
     for _ in 0..TURNS {
@@ -171,9 +171,9 @@ fn turn<D: Dynamics, G: Workspace>(
 /// better way.
 fn drive<D: Dynamics, G: Workspace>(
     motions: &mut Motions<'_, '_, D, G>,
-    from: Place,
-    aim: Aim,
-    best: &mut Option<Best>,
+    from: ErrandNode,
+    aim: Destination,
+    best: &mut Option<BestErrand>,
 ) -> bool {
     let is_short = best.is_none_or(|best| ((from.motions + 1) as f32) < best.motions);
     if !is_short || !motions.effort.take(LOOKS_A_PLACE) {
@@ -208,13 +208,13 @@ fn drive<D: Dynamics, G: Workspace>(
         {
             let arrives = arrives && from.first.is_none();
             let errand = Errand { leg: from.first.unwrap_or(leg), arrives, motions: UNKNOWN };
-            *best = Some(Best { errand, motions });
+            *best = Some(BestErrand { errand, motions });
         }
     }
     true
 }
 
-impl Place {
+impl ErrandNode {
     fn after(self, leg: Leg) -> Self {
         Self { pose: leg.1, first: self.first.or(Some(leg)), motions: self.motions + 1 }
     }

@@ -72,14 +72,14 @@ pub(crate) struct Prospect {
 pub(crate) const ENOUGH: f32 = 0.98;
 
 /// What a look is for.
-pub(crate) enum Sought<'a> {
+pub(crate) enum LookFor<'a> {
     /// The best prospects whose ends these lines disagree on.
     Prospects(Prospects<'a>, CellView<'a>),
     /// The worth of the best prospect. If lines are given, only prospects count on whose ends these lines disagree.
     Worth(&'a mut f32, Option<CellView<'a>>),
 }
 
-impl Sought<'_> {
+impl LookFor<'_> {
     /// Takes in a prospect; whether to go on.
     fn find(&mut self, new: Prospect) -> bool {
         match self {
@@ -114,7 +114,7 @@ pub struct Lookout<'a, D, G> {
 
 /// A ray, numbered from the right to the left with 0 straight ahead, and the share of lines at its end.
 #[derive(Clone, Copy)]
-struct Probe {
+struct ShareAtRay {
     ray: i64,
     share: f32,
 }
@@ -134,7 +134,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         prediction: &P,
         pose: Pose,
         (circles, fastest): (Circles, u16),
-        sought: &mut Sought<'_>,
+        sought: &mut LookFor<'_>,
     ) {
         for speed in circles.speeds(fastest) {
             if self.circle(prediction, pose, speed, sought).is_none() {
@@ -154,8 +154,8 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         prediction: &P,
         pose: Pose,
         (number, speed): (i64, u16),
-        sought: &mut Sought<'_>,
-    ) -> Option<Probe> {
+        sought: &mut LookFor<'_>,
+    ) -> Option<ShareAtRay> {
         self.evaluations = self.evaluations.checked_sub(prediction.asks())?;
         let ray = self.ray(pose, number);
         let target = self.dynamics.arrive(pose, &ray, speed).ok()?;
@@ -175,7 +175,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
                 return None;
             }
         }
-        Some(Probe { ray: number, share })
+        Some(ShareAtRay { ray: number, share })
     }
 
     /// Looks at the circle of one speed.
@@ -184,7 +184,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         prediction: &P,
         pose: Pose,
         speed: u16,
-        sought: &mut Sought<'_>,
+        sought: &mut LookFor<'_>,
     ) -> Option<()> {
         let RayFan { left, right, spacing } = self.dynamics.fan();
         let [left, right] = self.dynamics.rays_at(speed).unwrap_or([left, right]);
@@ -215,8 +215,8 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         prediction: &P,
         pose: Pose,
         speed: u16,
-        [mut a, mut b]: [Probe; 2],
-        sought: &mut Sought<'_>,
+        [mut a, mut b]: [ShareAtRay; 2],
+        sought: &mut LookFor<'_>,
     ) -> Option<()> {
         // How far from one half: the method of Illinois, which halves an end that stays.
         let (mut off_a, mut off_b) = (a.share - 0.5, b.share - 0.5);
@@ -296,7 +296,7 @@ fn seek<P: Prediction, D: Dynamics, G: Workspace>(
     for circles in [(usual, lookout.usual), (all, fastest)] {
         if list.is_empty() {
             let prospects = Prospects { list: &mut *list, apart };
-            let mut sought = Sought::Prospects(prospects, ground);
+            let mut sought = LookFor::Prospects(prospects, ground);
             lookout.look(prediction, pose, circles, &mut sought);
         }
     }

@@ -27,7 +27,7 @@ use crate::search::circles::Search;
 use crate::search::dead_end::DeadEnd;
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::DirectionRule;
-use crate::search::motions::{Leg, Motions, Start};
+use crate::search::motions::{Leg, Motions, StartGround};
 use crate::search::objective::OPENING;
 use crate::search::problem::Problem;
 
@@ -54,7 +54,7 @@ type Begun = (Leg, u32);
 
 /// Where a way has come to.
 #[derive(Clone, Copy)]
-struct Place {
+struct ManoeuvreNode {
     pose: Pose,
     /// The first motion of all.
     first: Option<Leg>,
@@ -106,7 +106,7 @@ pub(crate) fn manoeuvre<D: Dynamics, R: DirectionRule, G: Workspace>(
         looks_at_long_ways: false,
     };
     let free = search.view.out_of_reach_for();
-    it.try_all(Place { pose: from, first: None, motions: 0, free });
+    it.try_all(ManoeuvreNode { pose: from, first: None, motions: 0, free });
     search.effort = it.motions.effort;
     let begun = it.shortest.or(it.escape).or(it.approach);
     begun.map(|(first, _)| first).ok_or_else(|| it.dead_end())
@@ -127,8 +127,8 @@ pub(crate) fn waypoint<D: Dynamics, G: Workspace>(search: &mut Search<'_, D, G>)
 impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G> {
     /// Tries short ways, then long ones, until one leads to a label. From outside it tries then those that lead further
     /// out, until one leads to a safe pose at least.
-    fn try_all(&mut self, from: Place) {
-        let kinds = if self.motions.start == Start::Outside { 4 } else { 2 };
+    fn try_all(&mut self, from: ManoeuvreNode) {
+        let kinds = if self.motions.start == StartGround::Outside { 4 } else { 2 };
         for kind in 0..kinds {
             let leads_out = kind >= 2;
             if self.shortest.is_some() || leads_out && self.escape.is_some() {
@@ -143,7 +143,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     }
 
     /// Tries all ways of a kind: straight on, then from places on a round to either side.
-    fn try_ways(&mut self, from: Place) {
+    fn try_ways(&mut self, from: ManoeuvreNode) {
         self.drive_on(from);
         for side in [Side::Left, Side::Right] {
             self.go_round(from, side, Self::drive_on);
@@ -154,8 +154,8 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     fn dead_end(&self) -> DeadEnd {
         match self.motions.start {
             _ if !self.motions.effort.is_enough() => DeadEnd::Undecided,
-            Start::Outside => DeadEnd::Outside,
-            Start::Safe if self.comes_near && !self.is_hemmed_in => DeadEnd::Resolution,
+            StartGround::Outside => DeadEnd::Outside,
+            StartGround::Safe if self.comes_near && !self.is_hemmed_in => DeadEnd::Resolution,
             _ => DeadEnd::Cornered,
         }
     }
@@ -166,7 +166,12 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     }
 
     /// Follows the circle to a side and looks at each place on it. At some of the places it calls `branch`.
-    fn go_round(&mut self, from: Place, side: Side, mut branch: impl FnMut(&mut Self, Place)) {
+    fn go_round(
+        &mut self,
+        from: ManoeuvreNode,
+        side: Side,
+        mut branch: impl FnMut(&mut Self, ManoeuvreNode),
+    ) {
         let (mut place, mut turned) = (from, 0_u32);
         while self.is_short(place.motions + 1) {
             let Some((action, after)) = self.motions.round(place.pose, side) else { return };
@@ -191,7 +196,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     }
 
     /// Drives straight on.
-    fn drive_on(&mut self, from: Place) {
+    fn drive_on(&mut self, from: ManoeuvreNode) {
         let (mut place, mut searches) = (from, 0);
         while searches < SEARCHES && self.is_short(place.motions + 1) {
             let Some((leg, motions)) = self.straight(place) else { return };
@@ -221,7 +226,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     }
 
     /// The drive straight ahead, and the number of its motions: several at once while no uncertain ground is in reach.
-    fn straight(&mut self, from: Place) -> Option<(Leg, u32)> {
+    fn straight(&mut self, from: ManoeuvreNode) -> Option<(Leg, u32)> {
         let is_far = from.first.is_some() && !self.looks_at_long_ways;
         let several = if is_far { self.motions.straight_on(from.pose, from.free) } else { None };
         several.or_else(|| self.motions.straight(from.pose).map(|leg| (leg, 1)))
@@ -229,7 +234,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
 
     /// Whether the problem is infeasible at the end of a way. If it is feasible, the way is the shortest, and there is
     /// no reason to go on. Otherwise updates how far the vehicle can go from there with no uncertain ground in reach.
-    fn look(&mut self, place: &mut Place) -> bool {
+    fn look(&mut self, place: &mut ManoeuvreNode) -> bool {
         self.note(place);
         let Self { problem, motions, .. } = self;
         motions.effort.take(OPENING);
@@ -251,7 +256,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
     }
 
     /// Records a way that ends safe, or nearer to the waypoint.
-    fn note(&mut self, place: &Place) {
+    fn note(&mut self, place: &ManoeuvreNode) {
         let Some(first) = place.first else { return };
         let Motions { dynamics, area, start, .. } = self.motions;
         let (pose, begun) = (place.pose, (first, place.motions));
@@ -259,7 +264,7 @@ impl<D: Dynamics, R: DirectionRule, G: Workspace> Manoeuvre<'_, '_, '_, D, R, G>
         if distance < self.nearest {
             (self.nearest, self.approach) = (distance, Some(begun));
         }
-        if start != Start::Safe
+        if start != StartGround::Safe
             && self.escape.is_none_or(|(_, least)| place.motions < least)
             && area.contains(pose.site)
             && dynamics.keeps_inside(pose, pose, area, 0)

@@ -15,7 +15,7 @@ pub(crate) type Leg = (Action, Pose);
 
 /// Where all motions begin.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Start {
+pub(crate) enum StartGround {
     /// Inside the area, with a circle to one side to stay on for ever.
     Safe,
     /// Inside with no such circle, or where an error has brought it: within the margin.
@@ -28,7 +28,7 @@ pub(crate) enum Start {
 pub(crate) struct Motions<'d, 'p, D, G> {
     pub(crate) dynamics: &'d D,
     pub(crate) area: &'p G,
-    pub(crate) start: Start,
+    pub(crate) start: StartGround,
     /// Where motions stay.
     ground: G,
     /// From outside: how far inside motions end at least; negative.
@@ -40,12 +40,12 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
     pub(crate) fn new(dynamics: &'d D, area: &'p G, from: Pose, effort: Effort) -> Self {
         let whole = area.whole();
         let start = match area.contains(from.site) {
-            true if dynamics.is_safe(from, area) => Start::Safe,
-            _ if whole.contains(from.site) => Start::Unsafe,
-            _ => Start::Outside,
+            true if dynamics.is_safe(from, area) => StartGround::Safe,
+            _ if whole.contains(from.site) => StartGround::Unsafe,
+            _ => StartGround::Outside,
         };
         let depth = whole.depth(from.site);
-        let ground = if start == Start::Safe { *area } else { whole };
+        let ground = if start == StartGround::Safe { *area } else { whole };
         Self { dynamics, area, start, ground, depth, effort }
     }
 
@@ -57,7 +57,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         let action = side.of(dynamics.turning_circles(pose)?).action;
         let after = dynamics.target(pose, action)?;
         if self.stays(pose, after)
-            && (self.start == Start::Outside || self.may_hold(pose, after, side))
+            && (self.start == StartGround::Outside || self.may_hold(pose, after, side))
         {
             return Some((action, after));
         }
@@ -97,7 +97,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
             }
             let leg = (grid.action(ray.index, speed), after);
             // Of a safe vehicle it is known by now that the motion stays inside.
-            let is_inside = self.start == Start::Safe
+            let is_inside = self.start == StartGround::Safe
                 || area.contains(after.site) && dynamics.stays_inside(pose, after, area);
             if is_inside && dynamics.ends_safe(after, area, room) {
                 return Some(leg);
@@ -152,7 +152,7 @@ impl<'d, 'p, D: Dynamics, G: Workspace> Motions<'d, 'p, D, G> {
         self.effort.take(1);
         self.effort.take_sweep(ground, &[pose.site, after.site]);
         let ends = ground.encloses(after.site)
-            || self.start == Start::Outside && ground.depth(after.site) >= self.depth;
+            || self.start == StartGround::Outside && ground.depth(after.site) >= self.depth;
         ends && ground.confines(pose.site, after.site)
             && self.dynamics.stays_inside(pose, after, ground)
     }

@@ -29,7 +29,7 @@ struct Probe {
 
 /// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to. It says whether the
 /// end is the best so far.
-pub(crate) struct Places<'a, D, G, S, F> {
+pub(crate) struct EndSearch<'a, D, G, S, F> {
     pub(crate) dynamics: &'a D,
     pub(crate) area: &'a G,
     pub(crate) pose: Pose,
@@ -43,7 +43,7 @@ pub(crate) struct Places<'a, D, G, S, F> {
 }
 
 impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32) -> bool>
-    Places<'_, D, G, S, F>
+    EndSearch<'_, D, G, S, F>
 {
     /// The first ray of a speed, and how many others it has.
     fn rays(&self, speed: u16) -> Option<(i64, u32)> {

@@ -45,7 +45,7 @@ use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
 use crate::motion::dynamics::{Dynamics, Pose, Ray, Side};
 use crate::search::circles::{Findings, Search};
-use crate::search::course::{Course, Far};
+use crate::search::course::{Course, Excursion};
 use crate::search::dead_end::{DeadEnd, way_to_open_ground};
 use crate::search::detour::{self, Way};
 use crate::search::direction_rule::{ArcRule, DirectionRule};
@@ -156,7 +156,7 @@ fn goes_round<D: Dynamics>(dynamics: &D, pose: Pose) -> bool {
 }
 
 /// The result of following a bearing.
-enum Approach {
+enum BearingResult {
     /// Its first leg, and the number of motions to where the undirected problem is feasible.
     Feasible(Leg, u32),
     /// The problem is feasible nowhere on the way.
@@ -237,12 +237,12 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
     /// The next motion of a course, if it can be made.
     fn go_on(&mut self) -> Option<Found> {
         let pose = self.search.pose;
-        if let Far::To(place) = self.course.far {
+        if let Excursion::To(place) = self.course.far {
             let drive = self.drive_far(place - pose.site);
             if drive.is_some() {
                 return drive;
             }
-            self.course.far = Far::Over;
+            self.course.far = Excursion::Over;
         }
         let found = self.next_motion();
         if found.is_none() {
@@ -278,12 +278,12 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
 
     /// The first motion to open ground, which lies so far off, if it is beyond reach and there was no such drive.
     fn begin_far(&mut self, way: Vector) -> Option<Found> {
-        if self.course.far != Far::Not {
+        if self.course.far != Excursion::Not {
             return None;
         }
         let place = self.search.pose.site.step(way).ok()?;
         let found = self.drive_far(way)?;
-        self.course.far = Far::To(place);
+        self.course.far = Excursion::To(place);
         Some(found)
     }
 
@@ -353,11 +353,11 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         for bearing in [along, across, between, between.left()] {
             for bearing in [bearing, bearing.reversed()] {
                 match self.approach(bearing, horizon) {
-                    Approach::Feasible(leg, motions) => {
+                    BearingResult::Feasible(leg, motions) => {
                         (nearest, horizon) = (Some(leg), motions - 1);
                     }
-                    Approach::Fruitless => otherwise = DeadEnd::Resolution,
-                    Approach::Blocked => {}
+                    BearingResult::Fruitless => otherwise = DeadEnd::Resolution,
+                    BearingResult::Blocked => {}
                 }
             }
         }
@@ -369,7 +369,7 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
 
     /// The straight drive in a direction, of at most `horizon` motions, to where the undirected problem
     /// is feasible.
-    fn approach(&mut self, direction: Vector, horizon: u32) -> Approach {
+    fn approach(&mut self, direction: Vector, horizon: u32) -> BearingResult {
         let mut first = None;
         let mut pose = self.search.pose;
         for motions in 1..=horizon {
@@ -386,12 +386,12 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
                 let found = there.best(&self.problem.rule, None);
                 self.search.effort = there.effort;
                 if found.best.is_some() {
-                    return Approach::Feasible(first, motions);
+                    return BearingResult::Feasible(first, motions);
                 }
             }
             pose = leg.1;
         }
-        if first.is_some() { Approach::Fruitless } else { Approach::Blocked }
+        if first.is_some() { BearingResult::Fruitless } else { BearingResult::Blocked }
     }
 
     /// One motion on the way to a point: the drive that brings it nearer, or the first of the fewest
@@ -401,8 +401,8 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         let (dynamics, bearing) = (self.search.dynamics, heading_of(goal));
         let coarse = dynamics.fan().spacing.0 / 2 > ALONG;
         match self.drive(pose, bearing, goal) {
-            Drive::Leg(leg) => return Some(leg),
-            Drive::Blocked if !coarse => return None,
+            DriveResult::Leg(leg) => return Some(leg),
+            DriveResult::Blocked if !coarse => return None,
             _ => {}
         }
         let off = bearing.since(pose.heading).0 as i32;
@@ -417,8 +417,8 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
             for (side, after) in sides.into_iter().zip(&mut after) {
                 *after = dynamics.turn_in_place(*after, side)?.1;
                 match self.drive(*after, bearing, goal) {
-                    Drive::Leg(_) => return dynamics.turn_in_place(pose, side),
-                    Drive::Blocked if !coarse => return None,
+                    DriveResult::Leg(_) => return dynamics.turn_in_place(pose, side),
+                    DriveResult::Blocked if !coarse => return None,
                     _ => {}
                 }
             }
@@ -429,17 +429,17 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
 
     /// The fastest drive that brings a point nearer, if its bearing lies within the fan: along the
     /// nearest ray, or along the one on the other side of the bearing.
-    fn drive(&mut self, pose: Pose, bearing: Heading, goal: Vector) -> Drive {
+    fn drive(&mut self, pose: Pose, bearing: Heading, goal: Vector) -> DriveResult {
         let dynamics = self.search.dynamics;
         let (grid, rays) = (dynamics.grid(), dynamics.around(pose, bearing));
         let aside = bearing.since(rays[0].heading).0 as i32;
         if aside.unsigned_abs() > ALONG.max(dynamics.fan().spacing.0 / 2) {
-            return Drive::Beyond;
+            return DriveResult::Beyond;
         }
         for ray in rays {
             for speed in (1..grid.speeds()).rev().filter(|speed| nears(&ray, *speed, goal)) {
                 if !self.search.effort.take(1) {
-                    return Drive::Blocked;
+                    return DriveResult::Blocked;
                 }
                 let area = &self.problem.area;
                 let stays = |target: &Pose| {
@@ -451,16 +451,16 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
                     self.search.effort.take_sweep(area, &[pose.site, target.site]);
                 }
                 if let Some(target) = target.filter(stays) {
-                    return Drive::Leg((grid.action(ray.index, speed), target));
+                    return DriveResult::Leg((grid.action(ray.index, speed), target));
                 }
             }
         }
-        Drive::Blocked
+        DriveResult::Blocked
     }
 }
 
 /// The result of one drive on a bearing.
-enum Drive {
+enum DriveResult {
     /// It brings its goal nearer.
     Leg(Leg),
     /// No ray leads that way: a turn may help.

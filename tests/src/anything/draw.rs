@@ -10,11 +10,11 @@ use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use nalgebra::{Point2, Vector2};
+use planner_core::CarShape;
 use planner_core::bounds::slope_within_degrees;
 use planner_core::dynamics::ActionGrid;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
-use planner_core::motion::car::{self};
 use planner_core::{
     Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
     Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
@@ -208,8 +208,7 @@ fn vehicle(rng: &mut ChaCha8Rng, side: f64) -> Option<AnyVehicle> {
         _ => {
             let radius_mm = (reach_mm * scale(rng, 0.1, 3.0)) as u32;
             let shortest_mm = speed_step_mm * rng.random_range(1..=3);
-            let shape =
-                car::Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+            let shape = CarShape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
             AnyVehicle::Car(Car::new(shape).ok()?)
         }
     })

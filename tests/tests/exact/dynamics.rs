@@ -1,12 +1,12 @@
 //! Dynamics: accepted parameters keep the contract, refused ones are named, and a broken promise is found.
 
 use nalgebra::Point2;
+use planner_core::CarShape;
 use planner_core::dynamics::{
     Action, ActionGrid, Control, Dynamics, Ray, RayFan, Side, TurningCircle,
 };
 use planner_core::error::{ContractError, GridError, LatticeError};
 use planner_core::geometry::lattice::Vector;
-use planner_core::motion::car::Shape;
 use planner_core::motion::contract::{self};
 use planner_core::{Angle, Area, Boat, Car, Heading, Holonomic, Pose, Site, Unicycle};
 use rand::{RngExt, SeedableRng};
@@ -335,7 +335,7 @@ fn each_broken_promise_is_named() {
     }
     let (speeds, speed_step_mm) = (21, 100);
     let (radius_mm, shortest_mm, turn_step_urad) = (3_000, 500, 50_000);
-    let shape = Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+    let shape = CarShape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
     let car = Car::new(shape).expect("a car");
     for (breaks, broken) in [
         (Breaks::Nothing, Ok(())),
@@ -443,7 +443,7 @@ fn the_papers_motions_are_those_of_a_unicycle() {
 
 /// Any car that the constructor takes, from a model's to a ship's.
 fn any_car(rng: &mut ChaCha8Rng) -> Result<Car, GridError> {
-    Car::new(Shape {
+    Car::new(CarShape {
         radius_mm: [50, 1_000, 3_000, 5_000, 40_000, 2_000_000, rng.random_range(1..20_000)]
             [rng.random_range(0..7)],
         shortest_mm: [0, 1, 500, rng.random_range(0..3_000)][rng.random_range(0..4)],
@@ -456,7 +456,7 @@ fn any_car(rng: &mut ChaCha8Rng) -> Result<Car, GridError> {
 
 #[test]
 fn what_cannot_go_round_is_no_car() {
-    let good = Shape {
+    let good = CarShape {
         radius_mm: 3_000,
         shortest_mm: 500,
         turn_step_urad: 10_000,
@@ -465,17 +465,17 @@ fn what_cannot_go_round_is_no_car() {
     };
     assert!(Car::new(good).is_ok());
     for (bad, why) in [
-        (Shape { radius_mm: 0, ..good }, GridError::Circle),
-        (Shape { radius_mm: Car::WIDEST_MM, ..good }, GridError::Circle),
-        (Shape { shortest_mm: 2_001, ..good }, GridError::Circle),
-        (Shape { speeds: 1, ..good }, GridError::Circle),
+        (CarShape { radius_mm: 0, ..good }, GridError::Circle),
+        (CarShape { radius_mm: Car::WIDEST_MM, ..good }, GridError::Circle),
+        (CarShape { shortest_mm: 2_001, ..good }, GridError::Circle),
+        (CarShape { speeds: 1, ..good }, GridError::Circle),
         // 0.34 rad is the sharpest chord of 2 m.
-        (Shape { turn_step_urad: 350_000, ..good }, GridError::Circle),
-        (Shape { turn_step_urad: 0, ..good }, GridError::Turn),
-        (Shape { turn_step_urad: 785_399, ..good }, GridError::Turn),
-        (Shape { speed_step_mm: 0, ..good }, GridError::Reach),
-        (Shape { speeds: 601, speed_step_mm: 5_000, ..good }, GridError::Reach),
-        (Shape { speeds: 0, ..good }, GridError::Actions),
+        (CarShape { turn_step_urad: 350_000, ..good }, GridError::Circle),
+        (CarShape { turn_step_urad: 0, ..good }, GridError::Turn),
+        (CarShape { turn_step_urad: 785_399, ..good }, GridError::Turn),
+        (CarShape { speed_step_mm: 0, ..good }, GridError::Reach),
+        (CarShape { speeds: 601, speed_step_mm: 5_000, ..good }, GridError::Reach),
+        (CarShape { speeds: 0, ..good }, GridError::Actions),
     ] {
         assert_eq!(Car::new(bad).map(|_| ()), Err(why), "{bad:?}");
     }
@@ -612,7 +612,7 @@ fn who_is_safe_can_go_round() {
     let mut counts = Vec::new();
     let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(6));
     for radius_mm in [300, 1_000, 3_000, 5_000] {
-        let car = Car::new(Shape {
+        let car = Car::new(CarShape {
             radius_mm,
             shortest_mm: 500,
             turn_step_urad: 10_000,

@@ -17,8 +17,8 @@ use host_sim::reference::objective::LineCost;
 use host_sim::reference::optimum::solve;
 use host_sim::reference::solution::Solution;
 use host_sim::world::noise::{Extent, NoiseModel};
+use planner_core::CarShape;
 use planner_core::dynamics::{Action, Dynamics as _};
-use planner_core::motion::car::{self};
 use planner_core::motion::dynamics::room_for_errors;
 use planner_core::{AnyVehicle, Boat, Car, Pose, Unicycle, Workspace as _};
 use tests::{cases, is_long};
@@ -153,7 +153,7 @@ fn vehicles() -> [AnyVehicle; 4] {
     let steps = |turn_urad, sharpest, reach_mm| {
         Unicycle::new(turn_urad, sharpest, 3, reach_mm).expect("a grid")
     };
-    let shape = car::Shape {
+    let shape = CarShape {
         radius_mm: 1200,
         shortest_mm: 1000,
         turn_step_urad: 250_000,

@@ -8,6 +8,7 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{HYPOTHESES, Mission, Table};
 use host_sim::mission::given::CAPACITY;
+use host_sim::mission::names::FanName;
 use host_sim::mission::read_out::LEVEL;
 use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
 use host_sim::world::robot::Ideal;
@@ -15,7 +16,6 @@ use nalgebra::Point2;
 use planner_core::dynamics::{Action, Control};
 use planner_core::geometry::lattice::LIMIT;
 use planner_core::link::message::MissionArea;
-use planner_core::motion::unicycle::Grid;
 use planner_core::robot::Body as _;
 use planner_core::{
     AnyReliability, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, PosteriorView,
@@ -168,7 +168,7 @@ fn a_trusted_ball_ends_where_it_should_whatever_its_radius() {
 /// Labels are true with a probability of 0.7.
 fn campaign(algorithm: Algorithm, fields: u64, policy: Policy) -> Campaign {
     let noise = Some(NoiseModel { p: 0.7, extent: Extent::OutsideBalls(0.0) });
-    let (vehicle, usual) = (Grid::Paper.into(), Campaign::of(algorithm, 36));
+    let (vehicle, usual) = (FanName::Paper.into(), Campaign::of(algorithm, 36));
     Campaign { fields, vehicle, noise, policy, ..usual }
 }
 

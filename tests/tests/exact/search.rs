@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::given::CAPACITY;
+use planner_core::CarShape;
 use planner_core::dynamics::Dynamics;
 use planner_core::geometry::arc::SlopeArc;
 use planner_core::geometry::lattice::Vector;
-use planner_core::motion::car::{self};
 use planner_core::search::direction_rule::ArcRule;
 use planner_core::search::objective::{EffortWeight, LOOKS};
 use planner_core::search::problem::{Problem, Solution};
@@ -116,14 +116,14 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)
 
 /// A car of metres, with a shortest motion, and one of millimetres, whose positions are rounded by much.
 fn cars() -> [Car; 2] {
-    let good = car::Shape {
+    let good = CarShape {
         radius_mm: 1_500,
         shortest_mm: 500,
         turn_step_urad: 30_000,
         speeds: 11,
         speed_step_mm: 200,
     };
-    let tiny = car::Shape { radius_mm: 6, shortest_mm: 2, speed_step_mm: 1, ..good };
+    let tiny = CarShape { radius_mm: 6, shortest_mm: 2, speed_step_mm: 1, ..good };
     [good, tiny].map(|shape| Car::new(shape).expect("a car"))
 }
 

@@ -3,12 +3,12 @@
 use host_sim::campaign::accuracy::{Accuracy, Row, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::mission::algorithm::Algorithm;
-use planner_core::motion::unicycle::Grid;
+use host_sim::mission::names::FanName;
 use planner_core::{Following, Options};
 use tests::ensemble::expect;
 
 fn campaign(algorithm: Algorithm, following: Following, steps: u32) -> Summary {
-    let vehicle = Grid::Paper.into();
+    let vehicle = FanName::Paper.into();
     let campaign = Campaign { following, vehicle, ..Campaign::of(algorithm, steps) };
     let rows = campaign.run(&Accuracy { by_label: false }).expect("there is room");
     Summary::of(&campaign, rows).expect("labels are true")

@@ -6,10 +6,10 @@ use host_sim::campaign::ensemble::Campaign;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::{Mission, Table};
+use host_sim::mission::names::FanName;
 use host_sim::mission::results::Ending;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use host_sim::world::polygon::misclassified;
-use planner_core::motion::unicycle::Grid;
 use planner_core::{
     Accuracy, Angle, Goal, Label, Line, Plan, Planner as _, PosteriorView, Reliability, Sample,
     StopReason, Unicycle,
@@ -32,7 +32,7 @@ fn slope_arc() -> Accuracy {
 
 fn mission(number: u64, steps: u32, accuracy: Accuracy) -> Mission {
     let mut mission = standard_field::standard(31, number, Algorithm::Lookahead, steps);
-    mission.vehicle = Grid::Fine.into();
+    mission.vehicle = FanName::Fine.into();
     mission.goal = Some(Goal { accuracy, level: LEVEL });
     mission
 }
@@ -105,7 +105,7 @@ fn mixed(number: u64) -> [[f64; 2]; 3] {
     // What the planner believes of labels that nobody tells it about.
     let mission = noisy(mission, 0.8, 0.0);
     let mut known: Table = mission.table();
-    let mut planner = mission.doubtful(mission.config.area, Unicycle::from(Grid::Paper));
+    let mut planner = mission.doubtful(mission.config.area, Unicycle::from(FanName::Paper));
     let (mut pose, mut told, mut marks) = (mission.start, [0.0; 2], Vec::new());
     while marks.len() < 30 {
         let Plan::Move(motion) = planner.plan(pose) else { panic!("field {number}: no motion") };
@@ -138,7 +138,7 @@ fn labels_of_reliabilities_of_their_own_tell_nearly_what_they_can() {
 }
 
 fn campaign(seed: u64, steps: u32, noise: Option<NoiseModel>) -> Campaign {
-    let (fields, vehicle) = (cases(100, 1_000), Grid::Fine.into());
+    let (fields, vehicle) = (cases(100, 1_000), FanName::Fine.into());
     Campaign { fields, seed, vehicle, noise, ..Campaign::of(Algorithm::Lookahead, steps) }
 }
 

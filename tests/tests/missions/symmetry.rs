@@ -5,8 +5,8 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Lines;
+use host_sim::mission::names::FanName;
 use planner_core::geometry::lattice::UNITS_PER_METRE;
-use planner_core::motion::unicycle::Grid;
 use planner_core::{Area, Heading, Label, Plan, Pose, Sample, Site, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -93,7 +93,8 @@ fn of_fields(view: View, is_noisy: bool) -> Vec<f64> {
     let fields = if is_noisy { cases(12, 100) } else { cases(60, 500) };
     let of_each = ensemble::fly(fields, |number| {
         let mut mission = standard_field::standard(SEED, number, Algorithm::Lookahead, STEPS);
-        mission.vehicle = if number.is_multiple_of(2) { Grid::Paper } else { Grid::Fine }.into();
+        mission.vehicle =
+            if number.is_multiple_of(2) { FanName::Paper } else { FanName::Fine }.into();
         apart(&if is_noisy { noisy(mission, 0.8, 0.5) } else { mission }, view)
     });
     of_each.concat()

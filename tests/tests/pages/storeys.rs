@@ -2,6 +2,8 @@
 //! modules never read each other in a circle. Checked on the sources of `planner-core` and `host-sim` (with the crate
 //! below it), test code included; then on made-up sources, so that the check is known to fail when it should.
 //!
+//! And each word has one meaning: `planner-core` defines no type name twice.
+//!
 //! Paths are found as text. A comment ends the line, and names from the first inline module on are that module's.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -220,4 +222,56 @@ fn a_reading_upwards_or_in_a_circle_is_named() {
         let is_right = faults.contains(fault) && faults.is_empty() == fault.is_empty();
         assert!(is_right && !faults.contains('\n'), "{module}: {source}: {faults:?}");
     }
+}
+
+/// The twins of blocking traits, for `async`, have the names of these.
+const TWINS: (&str, [&str; 2]) =
+    ("crate::robot::asynchronous", ["crate::robot::hal", "crate::robot::body"]);
+
+#[test]
+fn each_type_name_of_the_core_is_defined_once() {
+    let mut modules = Modules::new();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../planner-core/src");
+    read_folder(&root, "crate", &mut modules);
+    let found: usize = modules.values().map(|source| type_names(source).count()).sum();
+    assert!(found > 300, "{found} type names are too few");
+    assert_eq!(defined_twice(&modules), Vec::<String>::new());
+    for (module, source, is_right) in [
+        ("crate::left", "struct Stone;", false),
+        ("crate::left", "mod tests {\n    pub(crate) enum Stone<'a> {", false),
+        ("crate::left", "pub trait Stone: Copy {", false),
+        ("crate::left", "type Stone = u8;", false),
+        ("crate::left", "impl Rock for Wall {\n    type Stone = u8;", true),
+        ("crate::left", "// struct Stone;\nlet struct_Stone = Stone;", true),
+        (TWINS.0, "pub trait Stone {", false),
+        (TWINS.0, "pub trait Drive {", true),
+    ] {
+        let right = [("crate::ground", "pub struct Stone;"), (TWINS.1[0], "pub trait Drive {}")];
+        let owned = |(module, source): (&str, &str)| (module.to_owned(), source.to_owned());
+        let modules: Modules = right.into_iter().chain([(module, source)]).map(owned).collect();
+        assert_eq!(defined_twice(&modules).is_empty(), is_right, "{module}: {source}");
+    }
+}
+
+/// The types and traits that a source defines. Associated types, which are indented, are none.
+fn type_names(source: &str) -> impl Iterator<Item = &str> {
+    source.lines().filter_map(|line| {
+        let mut words = line.split(|it: char| it != '_' && !it.is_alphanumeric());
+        let visibility = ["", "pub", "crate", "super", "in"];
+        let kind = words.find(|it| !visibility.contains(it))?;
+        let defines = ["struct", "enum", "union", "trait"].contains(&kind)
+            || kind == "type" && !line.starts_with(' ');
+        words.next().filter(|_| defines && !line.trim_start().starts_with("//"))
+    })
+}
+
+/// The type names that more than one module defines, or one module twice: a line each.
+fn defined_twice(modules: &Modules) -> Vec<String> {
+    let mut defined = BTreeMap::<_, Vec<_>>::new();
+    for (module, source) in modules {
+        type_names(source).for_each(|name| defined.entry(name).or_default().push(module.as_str()));
+    }
+    let is_twin = |by: &[&str]| matches!(by, [a, b] if *a == TWINS.0 && TWINS.1.contains(b));
+    defined.retain(|_, by| by.len() > 1 && !is_twin(by));
+    defined.into_iter().map(|(name, by)| format!("{name}: {}", by.join(", "))).collect()
 }

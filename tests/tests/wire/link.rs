@@ -13,6 +13,8 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::trace;
 use host_sim::world::errors::Errors;
+use planner_core::CarShape;
+use planner_core::VehicleShape;
 use planner_core::error::{GivenError, GridError, RoomError, ShapeError};
 use planner_core::link::delivery::{Link, LinkError};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
@@ -21,8 +23,6 @@ use planner_core::link::message::{
     Reply, Request, Settings, Setup,
 };
 use planner_core::link::station::{AllLabels, Flown, NoTerms, Tracks};
-use planner_core::motion::any_vehicle::Shape;
-use planner_core::motion::car;
 use planner_core::{AnySight, AnyVehicle, Area, KeepOut, Site, StopReason, Unicycle};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -252,14 +252,14 @@ fn a_setup_has_the_terms_that_were_told_or_none() {
     let car = of_any_vehicle(2, 10);
     let good =
         host_sim::hil::setup::setup(&car, LabelSource::Vehicle).expect("a mission for a chip");
-    let Shape::Car(shape) = good.vehicle else { panic!("{:?}", good.vehicle) };
+    let VehicleShape::Car(shape) = good.vehicle else { panic!("{:?}", good.vehicle) };
     let of_radius = |radius_mm| Setup {
-        vehicle: Shape::Car(car::Shape { radius_mm, ..shape }),
+        vehicle: VehicleShape::Car(CarShape { radius_mm, ..shape }),
         ..good.clone()
     };
     let by_any = |setup: &Setup| {
         let terms = setup.terms::<AnyVehicle, _>(setup.config.area);
-        terms.map(|terms| Shape::from(terms.dynamics))
+        terms.map(|terms| VehicleShape::from(terms.dynamics))
     };
     assert_eq!(by_any(&good), Ok(good.vehicle));
     let no_circle = DeclinedError::Vehicle(ShapeError::Grid(GridError::Circle));

@@ -13,6 +13,7 @@ use host_sim::mission::algorithm::Algorithm as Planner;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
+use planner_core::VehicleShape;
 use planner_core::error::{GivenError, GridError, ObservationError, RoomError, ShapeError};
 use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::delivery::Link;
@@ -22,7 +23,6 @@ use planner_core::link::message::{
     MOST_KEEP_OUTS, MissionArea, MissionEnd, Move, Outline, PROTOCOL, Reply, Request, Settings,
     Setup, Took,
 };
-use planner_core::motion::any_vehicle::Shape;
 use planner_core::planner::Stage;
 use planner_core::search::objective::EffortWeight;
 use planner_core::search::recovery::Recovery;
@@ -265,8 +265,8 @@ fn options(vectors: &mut Vectors, paper: &Mission, by_true: &Setup) {
     );
 
     let good = setup(paper, LabelSource::Vehicle);
-    let Shape::Unicycle(steps) = good.vehicle else { unreachable!("a unicycle") };
-    let boat = Setup { vehicle: Shape::Boat(steps), ..good.clone() };
+    let VehicleShape::Unicycle(steps) = good.vehicle else { unreachable!("a unicycle") };
+    let boat = Setup { vehicle: VehicleShape::Boat(steps), ..good.clone() };
     vectors.add("setup/boat", 15, 1, Reply::Setup(boat));
     for (name, crossing, following, policy, prior) in [
         ("joint", Crossing::AlongOracle, Following::Unrestricted, Policy::Joint, Prior::Sequences),
@@ -383,7 +383,7 @@ fn groups(vectors: &mut Vectors, of: &Setup) {
     let area = Area::new(corner(-4_000.0, -4_000.0), corner(4_000.0, 4_000.0)).expect("an inside");
     let (crossing, tolerance) = (Crossing::AcrossBisector, noise.tolerance);
     let config = Settings { area, crossing, tolerance, ..of.config };
-    let Shape::Unicycle(steps) = of.vehicle else { unreachable!("a unicycle") };
+    let VehicleShape::Unicycle(steps) = of.vehicle else { unreachable!("a unicycle") };
     let start = Pose { site: corner(-2_800.5, 2_700.25), heading: Heading(1 << 29) };
     // Coordinates beyond 2,048 m take a byte more.
     let full = |near: u8, steps_at_most: u16, last: Label| {
@@ -395,7 +395,7 @@ fn groups(vectors: &mut Vectors, of: &Setup) {
             algorithm,
             config,
             keep_outs: Some(1),
-            vehicle: Shape::Boat(steps),
+            vehicle: VehicleShape::Boat(steps),
             steps: steps_at_most,
             most_labels: Some(60),
             start,

@@ -1,7 +1,7 @@
 //! The planners that the simulator knows, by name.
 
+use crate::mission::names::FanName;
 use clap::ValueEnum as _;
-use planner_core::motion::unicycle::Grid;
 use planner_core::{DrivingPrice, EffortWeight, Following, Options};
 use serde::{Deserialize, Serialize};
 
@@ -60,16 +60,16 @@ impl Algorithm {
     }
 
     /// The default fan of the unicycle: the fine one where more rays cost no more looks.
-    pub fn grid(self) -> Grid {
+    pub fn grid(self) -> FanName {
         match self {
-            Self::Lookahead | Self::Track | Self::Chords => Grid::Fine,
-            _ => Grid::Paper,
+            Self::Lookahead | Self::Track | Self::Chords => FanName::Fine,
+            _ => FanName::Paper,
         }
     }
 
     /// Whether it can fly with a fan. Margin sampling cannot fly with the fine one, because it tries every action.
-    pub fn copes_with(self, grid: Grid) -> bool {
-        self != Self::Margin || grid == Grid::Paper
+    pub fn copes_with(self, grid: FanName) -> bool {
+        self != Self::Margin || grid == FanName::Paper
     }
 
     /// Whether its belief is a distribution over hypotheses. If not, it is a version space.

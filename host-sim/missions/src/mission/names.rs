@@ -1,7 +1,6 @@
 //! The names of choices in scenario files and flags.
 
-use planner_core::motion::unicycle::Grid;
-use planner_core::{Crossing, Following, Policy, Prior};
+use planner_core::{AnyVehicle, Crossing, Following, Policy, Prior, Unicycle};
 use serde::{Deserialize, Serialize};
 
 /// The names of a choice of the planner: each with what it chooses.
@@ -26,13 +25,28 @@ macro_rules! names {
     };
 }
 
-names! {
-    /// How finely the unicycle turns, by name.
-    FanName of Grid {
-        /// Rays 10 mrad apart
-        Paper = Paper,
-        /// Rays 1 urad apart
-        Fine = Fine,
+/// How finely the unicycle turns, by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum FanName {
+    /// Rays 10 mrad apart
+    Paper,
+    /// Rays 1 urad apart
+    Fine,
+}
+
+impl From<FanName> for Unicycle {
+    fn from(fan: FanName) -> Self {
+        match fan {
+            FanName::Paper => Self::paper(),
+            FanName::Fine => Self::fine(),
+        }
+    }
+}
+
+impl From<FanName> for AnyVehicle {
+    fn from(fan: FanName) -> Self {
+        Self::Unicycle(fan.into())
     }
 }
 

@@ -8,7 +8,6 @@ use nalgebra::Point2;
 use planner_core::belief::noise::trusted_radius;
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
-use planner_core::motion::unicycle::Grid;
 use planner_core::{
     AnyReliability, AnyVehicle, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability,
     Site, Tolerance, UnknownReliability, Workspace as _,
@@ -461,7 +460,7 @@ pub fn check_readings(field: &str, readings: u32) -> Result<()> {
 }
 
 /// Whether a planner copes with a fan.
-fn check_fan(algorithm: Algorithm, grid: Grid) -> Result<()> {
+fn check_fan(algorithm: Algorithm, grid: FanName) -> Result<()> {
     if algorithm.copes_with(grid) {
         return Ok(());
     }
@@ -474,7 +473,7 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<M
     check_readings("readings", file.readings)?;
     let algorithm = overrides.algorithm.unwrap_or(file.algorithm);
     let weight = file.varrho.map_or_else(|| Ok(algorithm.weight()), weight)?;
-    let grid = file.fan.map_or(algorithm.grid(), Grid::from);
+    let grid = file.fan.unwrap_or(algorithm.grid());
     check_fan(algorithm, grid)?;
     let has_fan = file.fan.is_some();
     let vehicle = file.vehicle.as_ref().map_or_else(

@@ -9,14 +9,14 @@ use planner_core::dynamics::{ActionGrid, Dynamics as _};
 use planner_core::error::{GridError, SetupError};
 use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
-use planner_core::motion::any_vehicle::Shape;
-use planner_core::motion::car::{self};
-use planner_core::motion::unicycle::{self, Grid};
-use planner_core::{AnyVehicle, Area, Boat, Car, Unicycle, Workspace as _};
+use planner_core::{
+    AnyVehicle, Area, Boat, Car, CarShape, Unicycle, UnicycleShape, VehicleShape, Workspace as _,
+};
 use serde::{Deserialize, Serialize};
 use serde_with::skip_serializing_none;
 
 use crate::mission::algorithm::Algorithm;
+use crate::mission::names::FanName;
 use crate::mission::strict::{beyond, no_angle, wrong};
 
 /// Actions that margin sampling and the random walk try one by one, at most.
@@ -112,7 +112,7 @@ impl VehicleTable {
         source: Source,
         algorithm: Algorithm,
         has_fan: bool,
-        grid: Grid,
+        grid: FanName,
     ) -> Result<AnyVehicle> {
         let name = |key| source.name(key);
         if has_fan && self.turn_step.is_some() {
@@ -120,7 +120,7 @@ impl VehicleTable {
         }
         self.check_keys(source)?;
         self.check_ranges(source)?;
-        let default = if grid == Grid::Fine { 1e-6 } else { 0.01 };
+        let default = if grid == FanName::Fine { 1e-6 } else { 0.01 };
         let turn_step_urad = whole(&name("turn_step"), self.turn_step.unwrap_or(default), 1e6)?;
         let step = self.step.unwrap_or(0.1);
         let speed_step_mm = whole(&name("step"), step, 1e3)?;
@@ -145,7 +145,7 @@ impl VehicleTable {
                 let shortest_mm = whole(&name("shortest"), self.shortest.unwrap_or(step), 1e3)?;
                 let radius_mm = whole(&name("radius"), radius, 1e3)?;
                 let shape =
-                    car::Shape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
+                    CarShape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
                 Car::new(shape).map(AnyVehicle::Car)
             }
         };
@@ -171,7 +171,7 @@ impl VehicleTable {
 
     /// The table of a vehicle, unless it is the unicycle of a fan.
     pub fn of(vehicle: AnyVehicle) -> Option<Self> {
-        let is_of_a_fan = [Grid::Paper, Grid::Fine].map(AnyVehicle::from).contains(&vehicle);
+        let is_of_a_fan = [FanName::Paper, FanName::Fine].map(AnyVehicle::from).contains(&vehicle);
         (!is_of_a_fan).then(|| vehicle.into())
     }
 
@@ -222,17 +222,17 @@ impl From<AnyVehicle> for VehicleTable {
         let grid = vehicle.grid();
         let metres = |mm: u32| f64::from(mm) / 1e3;
         let (turn_step_urad, kind) = match vehicle.into() {
-            Shape::Unicycle(it) => (it.turn_step_urad, Kind::Unicycle),
-            Shape::Boat(it) => (it.turn_step_urad, Kind::Boat),
-            Shape::Car(it) => (it.turn_step_urad, Kind::Car),
+            VehicleShape::Unicycle(it) => (it.turn_step_urad, Kind::Unicycle),
+            VehicleShape::Boat(it) => (it.turn_step_urad, Kind::Boat),
+            VehicleShape::Car(it) => (it.turn_step_urad, Kind::Car),
         };
         let (sharpest, car) = match vehicle.into() {
-            Shape::Unicycle(unicycle::Shape { sharpest, .. })
-            | Shape::Boat(unicycle::Shape { sharpest, .. }) => {
+            VehicleShape::Unicycle(UnicycleShape { sharpest, .. })
+            | VehicleShape::Boat(UnicycleShape { sharpest, .. }) => {
                 // Half a turn is to the left.
                 (Some(sharpest.radians().abs()), None)
             }
-            Shape::Car(shape) => (None, Some(shape)),
+            VehicleShape::Car(shape) => (None, Some(shape)),
         };
         Self {
             kind,
@@ -259,7 +259,7 @@ pub fn with_steps(
     let old = VehicleTable::from(vehicle);
     let (step, turn_step) = (speed_step.or(old.step), turn_step.or(old.turn_step));
     let table = VehicleTable { step, turn_step, ..old };
-    table.vehicle(Source::Flags, algorithm, false, Grid::Paper)
+    table.vehicle(Source::Flags, algorithm, false, FanName::Paper)
 }
 
 /// Refuses a vehicle that the algorithm cannot drive. Chords, margin sampling, the random walk and the lawnmower drive no

@@ -11,13 +11,13 @@ use crate::belief::cells::trapezoids::{Trapezoid, Trapezoids};
 use crate::belief::sample::Sample;
 use crate::geometry::approximate::{METRE, UnitVector, cross, inverse_sqrt};
 use crate::geometry::lattice::Site;
-use crate::geometry::local_line::{Frame, LocalLine};
+use crate::geometry::local_line::{LocalAxes, LocalLine};
 
 /// The integrals over some lines, each times 2^60; `n` is a line's unit normal and `r` its offset,
 /// `n . q = r`.
 #[derive(Clone, Copy)]
 pub(crate) struct Moments {
-    frame: Frame,
+    frame: LocalAxes,
     /// Of 1.
     measure: f32,
     /// Of `n`: along the frame and to its left.
@@ -42,7 +42,7 @@ struct End {
 }
 
 /// A turn of directions from `-h` to `h` about the middle one.
-struct Turn {
+struct TurnIntegrals {
     middle: [f32; 2],
     /// Of `h`.
     cos: f32,
@@ -54,7 +54,7 @@ struct Turn {
     odder: f32,
 }
 
-impl Turn {
+impl TurnIntegrals {
     /// From one unit vector to another, less than half a turn to its left. What is small is computed without the
     /// difference of like numbers.
     fn of([x0, z0]: [f32; 2], [x1, z1]: [f32; 2]) -> Self {
@@ -116,7 +116,8 @@ impl Moments {
     /// ends gives the even part, half their difference the odd one. Only even products contribute, and these reduce to
     /// the integrals of `cos^2`, `h + sin h cos h`, and of `sin^2`, `h - sin h cos h`.
     fn add(&mut self, begins: End, ends: End) {
-        let Turn { middle: [x, z], cos, sin, even, odd, odder } = Turn::of(begins.unit, ends.unit);
+        let TurnIntegrals { middle: [x, z], cos, sin, even, odd, odder } =
+            TurnIntegrals::of(begins.unit, ends.unit);
         let width = (begins.width + ends.width) / (2.0 * cos);
         let widening = 0.5 * (ends.width - begins.width);
         // Of the middle of the interval.
@@ -130,11 +131,11 @@ impl Moments {
     }
 
     /// No line, in a frame.
-    pub(crate) const fn none(frame: Frame) -> Self {
+    pub(crate) const fn none(frame: LocalAxes) -> Self {
         Self { frame, measure: 0.0, normal: [0.0; 2], offset: 0.0 }
     }
 
-    pub(crate) const fn frame(&self) -> Frame {
+    pub(crate) const fn frame(&self) -> LocalAxes {
         self.frame
     }
 
@@ -173,7 +174,11 @@ const SERIES: [f32; 7] = [
 
 /// The frame in which a cell is small: along its first direction, about that of its samples to which the lines
 /// through its first and its last vertex come nearest.
-fn frame(first: Trapezoid, last: Trapezoid, samples: impl Iterator<Item = Site>) -> Option<Frame> {
+fn frame(
+    first: Trapezoid,
+    last: Trapezoid,
+    samples: impl Iterator<Item = Site>,
+) -> Option<LocalAxes> {
     let [from, to] = [first.from, last.to];
     let [per_from, per_to] = [from, to].map(|v| UnitVector::of(v).per_length);
     let mut nearest = None;
@@ -185,5 +190,5 @@ fn frame(first: Trapezoid, last: Trapezoid, samples: impl Iterator<Item = Site>)
             (nearest, least) = (Some(site), apart);
         }
     }
-    nearest.map(|about| Frame::new(about, from))
+    nearest.map(|about| LocalAxes::new(about, from))
 }

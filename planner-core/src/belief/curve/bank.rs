@@ -64,7 +64,7 @@ pub(crate) struct Bank {
 
 /// A label as it is taken in.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Heard {
+pub(crate) struct FrontLabel {
     /// +1 or -1.
     pub(crate) sign: f32,
     /// Where, to the left of the reference, in reaches.
@@ -160,8 +160,8 @@ impl Bank {
     }
 
     /// Takes in a label. Returns how likely it was.
-    pub(crate) fn hear(&mut self, heard: Heard) -> f32 {
-        let Heard { sign, left, errs, blur } = heard;
+    pub(crate) fn hear(&mut self, heard: FrontLabel) -> f32 {
+        let FrontLabel { sign, left, errs, blur } = heard;
         let mut chance = 0.0;
         for some in &mut self.of {
             let mut crowd = Crowd::NONE;
@@ -228,7 +228,7 @@ fn shares(corners: f32) -> impl Iterator<Item = f32> {
 
 /// An offset of one of the Gaussians that come together.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct CrowdMember {
     /// The number of the Gaussian that it is of.
     of: usize,
     /// Those with the same number go into one.
@@ -238,7 +238,7 @@ struct Part {
 
 /// Offsets that are to be as few Gaussians as [`EACH`]. All else of a Gaussian goes with its offset.
 struct Crowd {
-    parts: heapless::Vec<Part, PARTS, u8>,
+    parts: heapless::Vec<CrowdMember, PARTS, u8>,
 }
 
 impl Crowd {
@@ -248,7 +248,7 @@ impl Crowd {
     fn add(&mut self, of: usize, offset: Offset) {
         if offset.weight > LIGHT * LIGHT {
             let group = self.parts.len();
-            let _ = self.parts.push(Part { of, group, offset }); // there is room
+            let _ = self.parts.push(CrowdMember { of, group, offset }); // there is room
         }
     }
 

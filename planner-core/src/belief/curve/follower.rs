@@ -1,9 +1,9 @@
 //! A curve in arc length: takes in motions and labels, and says where the front is.
 
 use crate::belief::curve::arc::Arc;
-use crate::belief::curve::bank::{Bank, Heard, Offsets};
+use crate::belief::curve::bank::{Bank, FrontLabel, Offsets};
 use crate::belief::curve::gaussian::PLACES;
-use crate::belief::curve::start::{Start, nearest_pair};
+use crate::belief::curve::start::{FrontStart, nearest_pair};
 use crate::belief::evidence::Evidence;
 use crate::belief::front::{Front, Learnt, Waist, angle, limited};
 use crate::belief::noise::{Noise, Reliability};
@@ -216,7 +216,8 @@ impl Curve {
 
     /// Begins across the way between two sites, where some labels changed. The robot goes along the front's own direction.
     pub(crate) fn begin(&mut self, between: [Site; 2], labels: &[Sample]) {
-        let Start { site, heading, deviation } = Start::across(between, labels, LEAST, self.reach);
+        let FrontStart { site, heading, deviation } =
+            FrontStart::across(between, labels, LEAST, self.reach);
         self.leave();
         self.is_flipped = false;
         self.set(Arc { site, heading, bend: 0.0 }, deviation);
@@ -427,7 +428,7 @@ impl Curve {
         let left = self.arc.see(site).left / self.reach;
         let is_left = (label == Label::Positive) != self.is_flipped;
         let (sign, errs) = (if is_left { 1.0 } else { -1.0 }, self.error());
-        let chance = self.bank.hear(Heard { sign, left, errs, blur: blur * blur });
+        let chance = self.bank.hear(FrontLabel { sign, left, errs, blur: blur * blur });
         let [plus, minus] = self.nowhere;
         let agrees = if label == Label::Positive { [1.0 - errs, errs] } else { [errs, 1.0 - errs] };
         let [plus, minus] = [plus * agrees[0], minus * agrees[1]];

@@ -30,7 +30,7 @@ const LEAST: f32 = 1e-4;
 
 /// Where and how a front begins.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Start {
+pub(crate) struct FrontStart {
     pub(crate) site: Site,
     /// Its +1 side is to the left.
     pub(crate) heading: Heading,
@@ -38,7 +38,7 @@ pub(crate) struct Start {
     pub(crate) deviation: [f32; 2],
 }
 
-impl Start {
+impl FrontStart {
     /// Across the way from one site to another. The +1 side is where more of the labels are +1.
     pub(crate) fn across([from, to]: [Site; 2], labels: &[Sample], errs: f32, reach: f32) -> Self {
         let middle = Site::between(from, to);

@@ -6,4 +6,4 @@ mod posterior_view;
 mod pruned;
 
 pub use cell_posterior::{CellPosterior, Hypothesis};
-pub use posterior_view::{Best, Credible, PosteriorView, ReliabilityEstimate};
+pub use posterior_view::{Credible, MostLikely, PosteriorView, ReliabilityEstimate};

@@ -34,7 +34,7 @@ pub struct PosteriorView<'a, const N: usize, const H: usize, const E: usize, R: 
 
 /// The paper's outcome: the most likely hypothesis (Section IV-B).
 #[derive(Clone, Copy, Debug)]
-pub struct Best<'a, const E: usize, R = Reliability> {
+pub struct MostLikely<'a, const E: usize, R = Reliability> {
     /// The hypothesis.
     pub hypothesis: &'a Hypothesis<E, R>,
     /// Its probability.
@@ -189,10 +189,10 @@ impl<'a, const N: usize, const H: usize, const E: usize, R: Trust> PosteriorView
     }
 
     /// The most likely hypothesis, the first of equals.
-    pub fn best(&self) -> Option<Best<'a, E, R>> {
+    pub fn best(&self) -> Option<MostLikely<'a, E, R>> {
         let hypothesis = most_likely(self.hypotheses)?;
         let lines = self.hypotheses.lines(hypothesis);
-        Some(Best {
+        Some(MostLikely {
             hypothesis,
             probability: self.probability(hypothesis),
             slope_arc: lines.slope_arc(),

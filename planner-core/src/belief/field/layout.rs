@@ -69,14 +69,14 @@ pub(crate) struct Layout {
 
 /// The shape of a region.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Shape {
+pub(crate) enum RegionShape {
     /// All within a radius of a centre.
     Disc { centre: [f32; 2], radius: f32 },
     /// All places whose product with the normal is below the offset.
     HalfPlane { normal: [f32; 2], offset: f32 },
 }
 
-impl Shape {
+impl RegionShape {
     /// How far a place lies from the border of a half-plane. 0 for a disc.
     pub(crate) fn beyond(self, [x, z]: [f32; 2]) -> f32 {
         let Self::HalfPlane { normal: [a, b], offset } = self else { return 0.0 };
@@ -92,7 +92,7 @@ impl Shape {
 /// A region that may have another label than all else; or all but a shape, if that is not inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Region {
-    pub(crate) shape: Shape,
+    pub(crate) shape: RegionShape,
     pub(crate) is_inside: bool,
 }
 
@@ -154,9 +154,9 @@ impl Layout {
     ) -> [f32; 2] {
         // Of a place: how far it lies from the border of a half-plane, or from a disc that has been seen.
         let depth = |[x, z]: [f32; 2]| match shape {
-            Shape::Disc { centre: [a, b], .. } => (x - a) * (x - a) + (z - b) * (z - b),
-            Shape::HalfPlane { normal: [a, b], .. } if is_inside => -(a * x + b * z),
-            Shape::HalfPlane { normal: [a, b], .. } => a * x + b * z,
+            RegionShape::Disc { centre: [a, b], .. } => (x - a) * (x - a) + (z - b) * (z - b),
+            RegionShape::HalfPlane { normal: [a, b], .. } if is_inside => -(a * x + b * z),
+            RegionShape::HalfPlane { normal: [a, b], .. } => a * x + b * z,
         };
         match shape.centre() {
             Some(centre) if is_inside => centre,
@@ -191,7 +191,7 @@ impl Layout {
     }
 
     /// The discs, in order, with their weights.
-    pub(crate) fn discs(&self) -> impl Iterator<Item = (Shape, f32)> {
+    pub(crate) fn discs(&self) -> impl Iterator<Item = (RegionShape, f32)> {
         let [x, z] = self.half;
         self.lattices.into_iter().flat_map(move |it| {
             (0..it.rows).flat_map(move |row| {
@@ -200,7 +200,7 @@ impl Layout {
                         (f32::from(column) + 0.5) * it.cell[0] - x,
                         (f32::from(row) + 0.5) * it.cell[1] - z,
                     ];
-                    (Shape::Disc { centre, radius: it.radius }, it.weight)
+                    (RegionShape::Disc { centre, radius: it.radius }, it.weight)
                 })
             })
         })
@@ -240,10 +240,11 @@ impl Layout {
     }
 
     /// The half-planes of a direction, in order.
-    pub(crate) fn half_planes(&self, direction: usize) -> impl Iterator<Item = Shape> {
+    pub(crate) fn half_planes(&self, direction: usize) -> impl Iterator<Item = RegionShape> {
         let [first, step] = self.spans.get(direction).copied().unwrap_or([0.0, 1.0]);
         let normal = normal(direction);
-        (0..OFFSETS).map(move |k| Shape::HalfPlane { normal, offset: first + k as f32 * step })
+        (0..OFFSETS)
+            .map(move |k| RegionShape::HalfPlane { normal, offset: first + k as f32 * step })
     }
 }
 
@@ -345,7 +346,9 @@ pub(crate) mod tests {
                 let [x, z] = [200.0, 150.0].map(|side| side * (draws.unit() as f32 - 0.5));
                 let mut held = layout.discs_at([x, z]).peekable();
                 for (k, (shape, _)) in layout.discs().enumerate() {
-                    let Shape::Disc { centre: [a, b], radius } = shape else { unreachable!() };
+                    let RegionShape::Disc { centre: [a, b], radius } = shape else {
+                        unreachable!()
+                    };
                     let square = (x - a) * (x - a) + (z - b) * (z - b);
                     if (square - radius * radius).abs() > 1e-2 {
                         let is_held = held.next_if_eq(&k).is_some();
@@ -354,7 +357,7 @@ pub(crate) mod tests {
                 }
                 for k in 0..DIRECTIONS {
                     let out = layout.half_planes(k).filter(|it| {
-                        let Shape::HalfPlane { normal: [a, b], offset } = *it else {
+                        let RegionShape::HalfPlane { normal: [a, b], offset } = *it else {
                             unreachable!()
                         };
                         a * x + b * z > offset

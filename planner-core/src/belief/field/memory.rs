@@ -1,6 +1,6 @@
 //! What a field remembers: the sum of the labels in each region, in a byte, and the last labels one by one.
 
-use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS, Region, Shape};
+use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS, Region, RegionShape};
 use crate::belief::field::recent::Recent;
 use crate::belief::sample::Label;
 use crate::geometry::hull::Extent;
@@ -66,7 +66,7 @@ impl FieldMemory {
             x * x + z * z <= SAME * least * least
         };
         for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
-            if let Shape::Disc { centre, radius } = shape
+            if let RegionShape::Disc { centre, radius } = shape
                 && radius <= least
                 && is_there(centre)
             {
@@ -77,7 +77,7 @@ impl FieldMemory {
             for (shut, is_inside) in shut.iter_mut().zip([true, false]) {
                 let Some(shape) = layout.half_planes(direction).next() else { continue };
                 let heart = layout.heart(area, Region { shape, is_inside });
-                let is_shallow = |it: &Shape| it.beyond(heart) <= least;
+                let is_shallow = |it: &RegionShape| it.beyond(heart) <= least;
                 if is_there(heart) {
                     let count = layout.half_planes(direction).filter(is_shallow).count();
                     *shut = (*shut).max(count as u8);
@@ -140,9 +140,9 @@ mod bytes {
         }
     }
 
-    struct Reader<const N: usize>;
+    struct SumsVisitor<const N: usize>;
 
-    impl<'de, const N: usize> Visitor<'de> for Reader<N> {
+    impl<'de, const N: usize> Visitor<'de> for SumsVisitor<N> {
         type Value = Sums<N>;
 
         fn expecting(&self, f: &mut Formatter<'_>) -> Written {
@@ -160,7 +160,7 @@ mod bytes {
 
     impl<'de, const N: usize> Deserialize<'de> for Sums<N> {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            deserializer.deserialize_tuple(N, Reader)
+            deserializer.deserialize_tuple(N, SumsVisitor)
         }
     }
 

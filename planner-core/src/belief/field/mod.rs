@@ -27,10 +27,10 @@ mod odds;
 mod recent;
 mod seeking;
 
-pub(crate) use layout::{Region, Shape};
+pub(crate) use layout::{Region, RegionShape};
 pub use memory::FieldMemory;
 pub use odds::Left;
-pub(crate) use odds::{Field, Sought};
+pub(crate) use odds::{BoundaryOdds, Field};
 pub(crate) use recent::REMEMBERED;
 pub(crate) use seeking::MOST_PATCHES;
 pub use seeking::{Likely, Seeking};

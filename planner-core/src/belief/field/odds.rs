@@ -1,6 +1,6 @@
 //! How likely each region is to have another label than all else, and whether any is.
 
-use crate::belief::field::layout::{DIRECTIONS, Layout, OFFSETS, Region, Shape};
+use crate::belief::field::layout::{DIRECTIONS, Layout, OFFSETS, Region, RegionShape};
 use crate::belief::field::memory::{FieldMemory, SHUT};
 use crate::belief::field::recent::Recent;
 use crate::belief::field::seeking::Seeking;
@@ -31,14 +31,14 @@ pub struct Left {
 
 /// The odds of discs and of half-planes against "all has one label".
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Sought {
+pub(crate) struct BoundaryOdds {
     pub(crate) discs: f32,
     pub(crate) half_planes: f32,
     /// The region with the most odds, and these.
     pub(crate) heaviest: (Option<Region>, f32),
 }
 
-impl Sought {
+impl BoundaryOdds {
     /// Of all regions.
     pub(crate) fn odds(self) -> f32 {
         self.discs + self.half_planes
@@ -54,14 +54,14 @@ impl Sought {
 const KNOWN: usize = 32;
 
 /// The odds of regions by the sums of their labels. Many regions have the same sum.
-struct Known {
+struct KnownOdds {
     total: i32,
     /// The odds of all that is possible.
     whole: f32,
     odds: [Option<(i32, f32)>; KNOWN],
 }
 
-impl Known {
+impl KnownOdds {
     fn of_total(field: &Field, total: i32) -> Self {
         Self { total, whole: 1.0 + field.power(total.abs()), odds: [None; KNOWN] }
     }
@@ -195,7 +195,7 @@ impl Field {
     pub(crate) fn each(&self, mut take: impl FnMut(Region, f32)) {
         let share =
             if self.layout.has_discs() { self.seeking.most_likely().patches() } else { 0.0 };
-        let mut known = Known::of_total(self, self.memory.total);
+        let mut known = KnownOdds::of_total(self, self.memory.total);
         for (sum, (shape, weight)) in self.memory.discs.0.iter().zip(self.layout.discs()) {
             if *sum != SHUT {
                 let (is_inside, odds) = known.of(self, (*sum).into());
@@ -210,7 +210,7 @@ impl Field {
             let sought = usize::from(*first)..OFFSETS.saturating_sub((*last).into());
             let total = bins.iter().map(|it| i32::from(*it)).sum();
             if total != known.total {
-                known = Known::of_total(self, total);
+                known = KnownOdds::of_total(self, total);
             }
             let mut sum = 0;
             for (n, (bin, shape)) in bins.iter().zip(self.layout.half_planes(direction)).enumerate()
@@ -225,12 +225,12 @@ impl Field {
     }
 
     /// The odds of all regions together.
-    pub(crate) fn sought(&self) -> Sought {
-        let mut sought = Sought::default();
+    pub(crate) fn sought(&self) -> BoundaryOdds {
+        let mut sought = BoundaryOdds::default();
         self.each(|region, odds| {
             match region.shape {
-                Shape::Disc { .. } => sought.discs += odds,
-                Shape::HalfPlane { .. } => sought.half_planes += odds,
+                RegionShape::Disc { .. } => sought.discs += odds,
+                RegionShape::HalfPlane { .. } => sought.half_planes += odds,
             }
             if odds > sought.heaviest.1 {
                 sought.heaviest = (Some(region), odds);
@@ -240,7 +240,7 @@ impl Field {
     }
 
     /// What may be left, if all has one label.
-    pub(crate) fn left(&self, sought: Sought) -> Left {
+    pub(crate) fn left(&self, sought: BoundaryOdds) -> Left {
         let share = self.seeking.most_likely().patches();
         let even = |odds: f32, share: f32| {
             let odds = odds / share;

@@ -74,7 +74,7 @@ pub(crate) struct Grid<const K: usize, const M: usize> {
 }
 
 /// Sums of the masses, and moments about the middle of the cells, in columns and cells.
-pub(crate) struct Moments<const K: usize, const M: usize> {
+pub(crate) struct GridMoments<const K: usize, const M: usize> {
     pub(crate) total: f32,
     columns: [f32; K],
     rows: [f32; M],
@@ -158,7 +158,7 @@ impl<const K: usize, const M: usize> Grid<K, M> {
     }
 
     #[inline(never)]
-    pub(crate) fn moments(&self) -> Moments<K, M> {
+    pub(crate) fn moments(&self) -> GridMoments<K, M> {
         let (mut columns, mut rows, mut products) = ([0.0; K], [0.0; M], 0.0);
         let mut k = -0.5 * (K as f32 - 1.0);
         for (column, sum) in self.mass.iter().zip(&mut columns) {
@@ -176,11 +176,11 @@ impl<const K: usize, const M: usize> Grid<K, M> {
         let [by_column, by_row] = [spread(&columns, each), spread(&rows, each)];
         let covariance = products * each - by_column[0] * by_row[0];
         let (mean, variance) = ([by_column[0], by_row[0]], [by_column[1], by_row[1]]);
-        Moments { total, columns, rows, mean, variance, covariance }
+        GridMoments { total, columns, rows, mean, variance, covariance }
     }
 
     /// The mean direction: where columns go all around, that of the mean vector.
-    pub(crate) fn heading(&self, moments: &Moments<K, M>) -> Heading {
+    pub(crate) fn heading(&self, moments: &GridMoments<K, M>) -> Heading {
         let lay = self.lay;
         if !lay.is_whole::<K>() {
             return lay.heading.turned(angle(moments.mean[0] * lay.turn));
@@ -195,7 +195,7 @@ impl<const K: usize, const M: usize> Grid<K, M> {
     }
 
     /// The waist: the place on the mean line where offset and direction are uncorrelated.
-    pub(crate) fn waist(&self, moments: &Moments<K, M>) -> Site {
+    pub(crate) fn waist(&self, moments: &GridMoments<K, M>) -> Site {
         let lay = self.lay;
         let slope = moments.covariance / moments.variance[0];
         let ahead = limited(-slope * lay.step / lay.turn, FAR);

@@ -91,9 +91,9 @@ mod bytes {
         }
     }
 
-    struct Reader<const K: usize, const M: usize>;
+    struct MassesVisitor<const K: usize, const M: usize>;
 
-    impl<'de, const K: usize, const M: usize> Visitor<'de> for Reader<K, M> {
+    impl<'de, const K: usize, const M: usize> Visitor<'de> for MassesVisitor<K, M> {
         type Value = Masses<K, M>;
 
         fn expecting(&self, f: &mut Formatter<'_>) -> Written {
@@ -111,7 +111,7 @@ mod bytes {
 
     impl<'de, const K: usize, const M: usize> Deserialize<'de> for Masses<K, M> {
         fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            deserializer.deserialize_tuple(K * M, Reader)
+            deserializer.deserialize_tuple(K * M, MassesVisitor)
         }
     }
 }

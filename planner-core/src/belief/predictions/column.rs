@@ -4,7 +4,7 @@
 //! between neighbouring thresholds. At a threshold it is multiplied by the odds of the label there, or ends if the
 //! label is certain.
 //!
-//! Where nobody knows the reliability of labels, the density is a function of the number of labels that agree ([`Counts`]).
+//! Where nobody knows the reliability of labels, the density is a function of the number of labels that agree ([`CountDensity`]).
 //! At a threshold this number changes by one.
 //!
 //! A column stores knots on the cumulative mass, with straight lines between them. It stores every knot if there is
@@ -22,9 +22,9 @@ use crate::geometry::lattice::Vector;
 /// The factor by which a label multiplies the density of lines where the offset passes its site. It is a natural
 /// logarithm in units of 2^-16. It is limited to the range of single precision, so 128 steps add up without overflow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Step(i32);
+pub(crate) struct LogStep(i32);
 
-impl Step {
+impl LogStep {
     /// A label that says nothing. All zeros in memory.
     pub(crate) const NONE: Self = Self(0);
     /// Certainly -1: no line at a smaller offset.
@@ -64,25 +64,25 @@ pub(crate) fn exp(log: i32) -> f32 {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threshold {
     site: Vector,
-    step: Step,
+    step: LogStep,
     factor: f32,
     offset: i32,
 }
 
 impl Threshold {
     pub(crate) const NONE: Self =
-        Self { site: Vector { x: 0, z: 0 }, step: Step::NONE, factor: 1.0, offset: 0 };
+        Self { site: Vector { x: 0, z: 0 }, step: LogStep::NONE, factor: 1.0, offset: 0 };
 
     /// That of a label at a place, as yet without an offset.
-    pub(crate) fn new(site: Vector, step: Step) -> Self {
-        let is_certain = step == Step::BEGIN || step == Step::END;
+    pub(crate) fn new(site: Vector, step: LogStep) -> Self {
+        let is_certain = step == LogStep::BEGIN || step == LogStep::END;
         let factor = if is_certain { 0.0 } else { exp(step.0) };
         Self { site, step, factor, offset: 0 }
     }
 
     /// That of a doubtful label at a place where labels are counted. The density has no factor there.
     pub(crate) fn counting(site: Vector, label: Label) -> Self {
-        Self { site, step: Step::counting(label), factor: 0.0, offset: 0 }
+        Self { site, step: LogStep::counting(label), factor: 0.0, offset: 0 }
     }
 }
 
@@ -97,9 +97,9 @@ pub(crate) trait Density: Copy {
 
 /// Steps are logarithms, so their sum is one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sums;
+pub(crate) struct SumDensity;
 
-impl Density for Sums {
+impl Density for SumDensity {
     #[inline]
     fn log(self, sum: i32) -> i32 {
         sum
@@ -113,7 +113,7 @@ impl Density for Sums {
 
 /// Steps count labels: the density is that of the number of labels that agree.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Counts<'a> {
+pub(crate) struct CountDensity<'a> {
     /// Logarithms by the number of labels that agree, in units of 2^-16.
     pub(crate) logs: &'a [i32],
     /// The number of labels that agree with the lines at the smallest offsets.
@@ -121,7 +121,7 @@ pub(crate) struct Counts<'a> {
     pub(crate) peak: i32,
 }
 
-impl Density for Counts<'_> {
+impl Density for CountDensity<'_> {
     fn log(self, sum: i32) -> i32 {
         self.logs.get((self.first + sum) as usize).map_or(i32::MIN / 2, |log| log - self.peak)
     }
@@ -230,7 +230,7 @@ impl Column {
             it.offset = self.normal.along(it.site);
         }
         sort(thresholds);
-        let Lines { bottom, from, inside, to } = Lines::among(thresholds)?;
+        let LinesBetween { bottom, from, inside, to } = LinesBetween::among(thresholds)?;
         // That of the pieces that have a width: between labels of one place there is no line.
         let (mut sum, mut at, mut peak) = (bottom, from, i32::MIN);
         for (offset, step) in inside.iter().map(|it| (it.offset, it.step.0)).chain([(to, 0)]) {
@@ -277,7 +277,7 @@ impl Column {
 }
 
 /// The lines that certain labels leave, among thresholds by rising offset.
-struct Lines<'a> {
+struct LinesBetween<'a> {
     /// The sum of the steps where they begin, by the labels before.
     bottom: i32,
     /// Where they begin.
@@ -287,14 +287,14 @@ struct Lines<'a> {
     to: i32,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> LinesBetween<'a> {
     /// `None` if there are none.
     fn among(thresholds: &'a [Threshold]) -> Option<Self> {
-        let begin = thresholds.iter().rposition(|it| it.step == Step::BEGIN)?;
-        let end = thresholds.iter().position(|it| it.step == Step::END)?;
+        let begin = thresholds.iter().rposition(|it| it.step == LogStep::BEGIN)?;
+        let end = thresholds.iter().position(|it| it.step == LogStep::END)?;
         let inside = thresholds.get(begin + 1..end)?;
         let [from, to] = [thresholds.get(begin)?.offset, thresholds.get(end)?.offset];
-        let before = thresholds.iter().take(begin).filter(|it| it.step != Step::BEGIN);
+        let before = thresholds.iter().take(begin).filter(|it| it.step != LogStep::BEGIN);
         let bottom = before.map(|it| it.step.0).sum();
         (from < to).then_some(Self { bottom, from, inside, to })
     }
@@ -358,11 +358,11 @@ mod tests {
         let mut thresholds: List<Threshold, 40> = List::filled(Threshold::NONE);
         let ends = [(0, Label::Negative, 1.0), (100, Label::Positive, 1.0)];
         for &(offset, label, p) in labels.iter().chain(&ends) {
-            let step = Step::of(label, Reliability::new(p).unwrap());
+            let step = LogStep::of(label, Reliability::new(p).unwrap());
             let _ = thresholds.push(Threshold::new(Vector { x: 7, z: 4 * offset }, step));
         }
         let mut column = Column::NONE;
-        let peak = column.lay(Heading(0).unit(), &mut thresholds, Sums).unwrap();
+        let peak = column.lay(Heading(0).unit(), &mut thresholds, SumDensity).unwrap();
         (column, peak)
     }
 
@@ -402,11 +402,11 @@ mod tests {
     fn no_line_has_no_mass() {
         let mut thresholds: List<Threshold, 4> = List::filled(Threshold::NONE);
         for (z, label) in [(4, Label::Negative), (0, Label::Positive)] {
-            let step = Step::of(label, Reliability::CERTAIN);
+            let step = LogStep::of(label, Reliability::CERTAIN);
             let _ = thresholds.push(Threshold::new(Vector { x: 0, z }, step));
         }
         let mut column = Column::NONE;
-        assert_eq!(column.lay(Heading(0).unit(), &mut thresholds, Sums), None);
+        assert_eq!(column.lay(Heading(0).unit(), &mut thresholds, SumDensity), None);
         for z in [-9, 0, 9] {
             assert!(column.mass_above(Vector { x: 0, z }) <= 0.0);
         }

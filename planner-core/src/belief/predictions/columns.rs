@@ -23,7 +23,9 @@
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::list::List;
 use crate::belief::noise::Reliability;
-use crate::belief::predictions::column::{Column, Counts, Density, Step, Sums, Threshold, exp};
+use crate::belief::predictions::column::{
+    Column, CountDensity, Density, LogStep, SumDensity, Threshold, exp,
+};
 use crate::belief::predictions::directions::{Direction, directions};
 use crate::belief::predictions::spread::{Covariance, LineSums, Stretch, Whole};
 use crate::belief::sample::{Label, Sample};
@@ -38,7 +40,7 @@ const MOST: f32 = 3.0;
 /// The lines of `K` directions. `136 K` bytes and 12: 2.2 kB for 16 directions.
 #[derive(Clone, Debug)]
 pub struct Columns<const K: usize> {
-    view: View,
+    view: NearSites,
     /// Those of each direction.
     lines: [Column; K],
 }
@@ -47,7 +49,7 @@ impl<const K: usize> Columns<K> {
     /// No line: memory to [`lay`](Self::lay) columns in.
     pub const NONE: Self = {
         assert!(K >= 1, "there is at least one direction");
-        Self { view: View { from: Site::ORIGIN, shift: 0 }, lines: [Column::NONE; K] }
+        Self { view: NearSites { from: Site::ORIGIN, shift: 0 }, lines: [Column::NONE; K] }
     };
 
     /// Computes the columns from the given samples of a table and the labels that it has taken in since. `believed`
@@ -65,7 +67,7 @@ impl<const K: usize> Columns<K> {
         let samples = || labels.clone().chain(support.clone());
         let latest = labels.clone().next_back().or_else(|| samples().next());
         let from = latest.map_or(Site::ORIGIN, |(latest, _)| latest.site);
-        self.view = View::of(from, samples().map(|(sample, _)| sample.site));
+        self.view = NearSites::of(from, samples().map(|(sample, _)| sample.site));
         // Each of its samples at most: there is room.
         let mut thresholds: List<Threshold, N> = List::filled(Threshold::NONE);
         let prior = table.noise().reliability.unknown();
@@ -74,7 +76,7 @@ impl<const K: usize> Columns<K> {
             let _ = thresholds.push(if prior.is_some() && reliability != Reliability::CERTAIN {
                 Threshold::counting(place, label)
             } else {
-                Threshold::new(place, Step::of(label, reliability))
+                Threshold::new(place, LogStep::of(label, reliability))
             });
         }
         let directions: [Direction; K] = directions(table);
@@ -86,10 +88,10 @@ impl<const K: usize> Columns<K> {
             prior.likelihoods(doubtful().count() as u8, |log| {
                 let _ = logs.push((log.0 >> 16) as i32); // there are more samples than labels
             });
-            let density = Counts { logs: &logs, first, peak: 0 };
+            let density = CountDensity { logs: &logs, first, peak: 0 };
             lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks, density);
         } else {
-            lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks, Sums);
+            lay_each(&mut self.lines, &directions, &mut thresholds, &mut peaks, SumDensity);
         }
         cut(&mut self.lines);
     }
@@ -241,13 +243,13 @@ fn cut(columns: &mut [Column]) {
 /// Sites relative to the latest sample, which is near the line. The units are as fine as fit, so that products keep all
 /// digits.
 #[derive(Clone, Copy, Debug)]
-struct View {
+struct NearSites {
     from: Site,
     /// Bits by which a lattice unit is longer.
     shift: u32,
 }
 
-impl View {
+impl NearSites {
     /// From a site, so that some samples fit.
     fn of(from: Site, samples: impl Iterator<Item = Site>) -> Self {
         let size = |v: Vector| v.x.unsigned_abs() | v.z.unsigned_abs();

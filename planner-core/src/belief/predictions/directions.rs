@@ -49,7 +49,7 @@ pub(crate) fn directions<
         let _ = heaviest.push(item); // refused if it is lighter than all
     }
     let start = table.start().slope_arc();
-    let mut density = Density::over(start);
+    let mut density = DirectionDensity::over(start);
     for &(weight, k) in &heaviest {
         let weight = f32::from_bits(weight);
         let Some(hypothesis) = table.iter().nth(k.into()) else { continue };
@@ -79,13 +79,13 @@ struct Change {
 
 /// A density over directions, constant between changes. It is in integers, so that a narrow peak leaves no residue
 /// behind it. The unit is as small as lets 2^16 hypotheses of a weight of 1 add up.
-struct Density {
+struct DirectionDensity {
     first: Heading,
     mass: u64,
     changes: BinaryHeap<Change, Min, { 2 * (HEAVY + 1) }>,
 }
 
-impl Density {
+impl DirectionDensity {
     const ONE: f32 = (1_u64 << 46) as f32;
 
     /// None as yet, over the directions of an arc.
@@ -153,7 +153,7 @@ mod tests {
         let v = |x, z| Vector::new(x, z).unwrap();
         let whole = SlopeArc::new(v(1000, -1000), v(1000, 1000));
         let peak = SlopeArc::new(v(1_000_000, 0), v(1_000_000, 1));
-        let mut density = Density::over(whole);
+        let mut density = DirectionDensity::over(whole);
         density.add(peak, 1.0);
         density.add(whole, 1.0);
         let medians = density.medians::<8>().map(|it| (it.heading.radians(), it.density));
@@ -167,7 +167,7 @@ mod tests {
             assert!((at - exact).abs() < off, "{k}: {at} for {exact}");
             let width = if (2..=5).contains(&k) { 1e-6 } else { 4.0 * eighth };
             let units = f64::from(Angle::of_radians(1.0).0) * width;
-            let exact = f64::from(Density::ONE) / units;
+            let exact = f64::from(DirectionDensity::ONE) / units;
             assert!((f64::from(density) / exact - 1.0).abs() < 0.01, "{k}: {density}");
         }
     }

@@ -93,7 +93,7 @@ impl Vertex {
 
 /// The lines of a polygon below a place, or above it. `start` and `end` are lines through the place. Between them lie
 /// `count` vertices of the polygon, from number `first` on.
-struct Part {
+struct PolygonPart {
     start: Vertex,
     first: usize,
     count: usize,
@@ -145,7 +145,7 @@ impl DualPolygon {
 
     /// The lines below a place, or above it; `None` if they are all or none.
     #[inline(never)] // called from two places, and not small
-    fn part(&self, place: [f32; 2], label: Label) -> Option<Part> {
+    fn part(&self, place: [f32; 2], label: Label) -> Option<PolygonPart> {
         let sign = if label == Label::Positive { 1.0 } else { -1.0 };
         let mut before = *self.vertices.last()?;
         let mut above_before = sign * before.below(place);
@@ -161,17 +161,17 @@ impl DualPolygon {
         let ((first, start), (after, end)) = enters.zip(leaves)?;
         let all = self.vertices.len();
         let count = if after > first { after - first } else { after + all - first };
-        Some(Part { start, first, count, end })
+        Some(PolygonPart { start, first, count, end })
     }
 
     /// The part that remains after a label where all lines agree: everything.
-    fn whole(&self) -> Option<Part> {
+    fn whole(&self) -> Option<PolygonPart> {
         let (start, end) = (*self.vertices.first()?, *self.vertices.last()?);
-        Some(Part { start, first: 1, count: self.vertices.len() - 2, end })
+        Some(PolygonPart { start, first: 1, count: self.vertices.len() - 2, end })
     }
 
     /// The vertices of a part but for its start.
-    fn rest<'a>(&'a self, part: &'a Part) -> impl Iterator<Item = &'a Vertex> {
+    fn rest<'a>(&'a self, part: &'a PolygonPart) -> impl Iterator<Item = &'a Vertex> {
         let (before, from) = self.vertices.split_at_checked(part.first).unwrap_or_default();
         let wrapped = part.count.saturating_sub(from.len());
         let from = from.get(..part.count).unwrap_or(from);

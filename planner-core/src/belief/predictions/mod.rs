@@ -23,4 +23,4 @@ pub(crate) use predictor::entropy;
 pub use predictor::{Prediction, PredictiveBelief, Predictor};
 pub use spread::{Covariance, Spread, Stretch};
 pub(crate) use verdicts::PLACES;
-pub use verdicts::{Decisive, Heard, Odds, Verdict, Verdicts};
+pub use verdicts::{AuditLabel, Decisive, Odds, Verdict, Verdicts};

@@ -23,7 +23,7 @@ pub enum Verdict {
 
 /// A label of an audit.
 #[derive(Clone, Copy, Debug)]
-pub struct Heard {
+pub struct AuditLabel {
     /// The number of its place.
     pub(crate) place: usize,
     /// All other places are settled.
@@ -44,7 +44,7 @@ pub trait Verdicts: Copy + Debug + PartialEq {
     const HEARS: bool = false;
 
     /// Takes in a label, and says what the labels of its place come to.
-    fn observe(&mut self, heard: Heard) -> Verdict;
+    fn observe(&mut self, heard: AuditLabel) -> Verdict;
 
     /// Whether labels of a place were read that do not decide.
     fn is_open(&self, place: usize) -> bool;
@@ -65,7 +65,7 @@ pub struct Decisive;
 impl Verdicts for Decisive {
     const NONE: Self = Self;
 
-    fn observe(&mut self, heard: Heard) -> Verdict {
+    fn observe(&mut self, heard: AuditLabel) -> Verdict {
         if heard.agrees { Verdict::Agrees } else { Verdict::Refutes }
     }
 
@@ -100,8 +100,8 @@ impl Verdicts for Odds {
     const NONE: Self = Self { other_side: [0; PLACES], coin: 0, evidence: Evidence::NONE };
     const HEARS: bool = true;
 
-    fn observe(&mut self, heard: Heard) -> Verdict {
-        let Heard { place, is_last, agrees, reliability, level } = heard;
+    fn observe(&mut self, heard: AuditLabel) -> Verdict {
+        let AuditLabel { place, is_last, agrees, reliability, level } = heard;
         let Some(odds) = self.other_side.get_mut(place) else { return Verdict::Open };
         let (sure, p) = (i64::from(reliability), reliability.single());
         let (gain, chance) = if agrees { (-sure, p) } else { (sure, 1.0 - p) };
@@ -138,7 +138,8 @@ mod tests {
         let (mut odds, reliability) = (Odds::NONE, Reliability::new(p).unwrap());
         let mut last = Verdict::Open;
         for agrees in labels {
-            last = odds.observe(Heard { place: 0, is_last: false, agrees, reliability, level });
+            last =
+                odds.observe(AuditLabel { place: 0, is_last: false, agrees, reliability, level });
         }
         last
     }
@@ -176,8 +177,13 @@ mod tests {
                 for n in 0..LABELS {
                     let agrees = sequence >> n & 1 == 1;
                     weight *= if agrees { p } else { 1.0 - p };
-                    let heard =
-                        Heard { place: 0, is_last: false, agrees, reliability, level: 900_000 };
+                    let heard = AuditLabel {
+                        place: 0,
+                        is_last: false,
+                        agrees,
+                        reliability,
+                        level: 900_000,
+                    };
                     refutes |= odds.observe(heard) == Verdict::Refutes;
                 }
                 refuted += if refutes { weight } else { 0.0 };

@@ -10,7 +10,7 @@ use crate::link::message::{
     Request, Setup, Took,
 };
 use crate::link::station::seam::{self, Prepared};
-use crate::link::station::terms::{FromOutlines, Known, NoTerms, PlannerSetup};
+use crate::link::station::terms::{FromOutlines, KnownDynamics, NoTerms, PlannerSetup};
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner};
 use crate::robot::{Body, Hearing, LabelSensor, Step};
@@ -81,7 +81,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     ///
     /// # Errors
     /// [`NoTerms`].
-    pub fn terms<D: Known, G: FromOutlines>(
+    pub fn terms<D: KnownDynamics, G: FromOutlines>(
         &mut self,
         setup: &Setup,
     ) -> Result<PlannerSetup<D, G>, NoTerms> {

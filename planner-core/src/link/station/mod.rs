@@ -8,6 +8,6 @@ mod terms;
 pub use flight::{Flown, Station, Watch};
 pub use planners::{AllLabels, CfcAlone, Guards, Mission, NoOthers, Planners, Tracks, TrueLabels};
 pub use seam::Prepared;
-pub use terms::{FromOutlines, Known, NoTerms, PlannerSetup};
+pub use terms::{FromOutlines, KnownDynamics, NoTerms, PlannerSetup};
 
 pub use crate::planner::setup::Restart;

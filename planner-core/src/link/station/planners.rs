@@ -23,7 +23,7 @@ use crate::link::delivery::{LinkError, Port};
 use crate::link::message::{Algorithm, DeclinedError, Setup};
 use crate::link::station::flight::{Flown, Station, Watch};
 use crate::link::station::seam::Prepared;
-use crate::link::station::terms::{FromOutlines, Known, PlannerSetup};
+use crate::link::station::terms::{FromOutlines, KnownDynamics, PlannerSetup};
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::front_state::FrontState;
 use crate::planner::sight::{Near, Sight};
@@ -82,7 +82,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     ///
     /// # Errors
     /// As [`fly`](Self::fly).
-    pub fn mission<A: Planners, D: Known, G: FromOutlines>(
+    pub fn mission<A: Planners, D: KnownDynamics, G: FromOutlines>(
         &mut self,
         watch: &mut impl Watch,
     ) -> Result<Flown, LinkError> {
@@ -94,7 +94,7 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
     ///
     /// # Errors
     /// As [`fly`](Self::fly).
-    pub fn fly_with<A: Planners, D: Known, G: FromOutlines>(
+    pub fn fly_with<A: Planners, D: KnownDynamics, G: FromOutlines>(
         &mut self,
         setup: &Setup,
         watch: &mut impl Watch,

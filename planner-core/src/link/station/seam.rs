@@ -14,7 +14,7 @@ use crate::belief::weight::Prior;
 use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::link::message::{Capacity, DeclinedError, PROTOCOL, Setup};
-use crate::link::station::terms::{Known, PlannerSetup};
+use crate::link::station::terms::{KnownDynamics, PlannerSetup};
 use crate::motion::any_vehicle::ShapeError;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::cfc::Cfc;
@@ -82,7 +82,7 @@ impl Setup {
     ///
     /// # Errors
     /// [`DeclinedError`].
-    pub fn terms<D: Known, G: Workspace>(
+    pub fn terms<D: KnownDynamics, G: Workspace>(
         &self,
         area: G,
     ) -> Result<PlannerSetup<D, G>, DeclinedError> {

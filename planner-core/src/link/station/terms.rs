@@ -12,7 +12,7 @@ use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
     DeclinedError, MOST_CORNERS, MOST_KEEP_OUTS, MissionArea, Reply, Request, Setup,
 };
-use crate::motion::any_vehicle::{Shape, ShapeError};
+use crate::motion::any_vehicle::{ShapeError, VehicleShape};
 use crate::motion::dynamics::Dynamics;
 use crate::planner::options::Options;
 
@@ -86,6 +86,6 @@ impl FromOutlines for MissionArea {
 }
 
 /// Dynamics that a chip has, of all that a setup can ask for.
-pub trait Known: Dynamics + TryFrom<Shape, Error = ShapeError> {}
+pub trait KnownDynamics: Dynamics + TryFrom<VehicleShape, Error = ShapeError> {}
 
-impl<D: Dynamics + TryFrom<Shape, Error = ShapeError>> Known for D {}
+impl<D: Dynamics + TryFrom<VehicleShape, Error = ShapeError>> KnownDynamics for D {}

@@ -5,7 +5,7 @@
 
 use heapless::Vec;
 
-use crate::belief::field::{Field, Region, Shape, Sought};
+use crate::belief::field::{BoundaryOdds, Field, Region, RegionShape};
 use crate::geometry::approximate::sqrt;
 use crate::search::route::corners::{Corners, Hears};
 
@@ -36,7 +36,7 @@ impl Costs {
     }
 
     /// Takes what a field says, where it is: it is large.
-    pub(super) fn stand_for(&mut self, field: &Field, sought: Sought) {
+    pub(super) fn stand_for(&mut self, field: &Field, sought: BoundaryOdds) {
         let [x, z] = field.layout.half;
         self.after = SURVEY * 2.0 * x * z / field.layout.patch;
         let step = sought.odds() / REGIONS as f32;
@@ -60,7 +60,7 @@ impl Costs {
         let (mut cost, mut before, mut place) = (0.0, count, from);
         for corner in corners {
             let mut visits = 0;
-            let leg = Leg::of(place, *corner);
+            let leg = Segment::of(place, *corner);
             let mut sum = 0.0;
             for (left, region) in left.iter_mut().zip(&self.regions) {
                 if *left > 0.0 {
@@ -93,13 +93,13 @@ fn missed(x: f32) -> f32 {
 }
 
 /// A straight way.
-struct Leg {
+struct Segment {
     from: [f32; 2],
     along: [f32; 2],
     length: f32,
 }
 
-impl Leg {
+impl Segment {
     fn of(from: [f32; 2], to: [f32; 2]) -> Self {
         let (x, z) = (to[0] - from[0], to[1] - from[1]);
         let length = sqrt(x * x + z * z);
@@ -110,7 +110,7 @@ impl Leg {
     /// The metres of it that lie in a region.
     fn way_in(&self, region: &Region) -> f32 {
         let inside = match region.shape {
-            Shape::Disc { centre, radius } => {
+            RegionShape::Disc { centre, radius } => {
                 let (x, z) = (centre[0] - self.from[0], centre[1] - self.from[1]);
                 let aside = self.along[0] * z - self.along[1] * x;
                 let square = radius * radius - aside * aside;
@@ -121,7 +121,7 @@ impl Leg {
                     0.0
                 }
             }
-            Shape::HalfPlane { normal, offset } => {
+            RegionShape::HalfPlane { normal, offset } => {
                 let off = offset - normal[0] * self.from[0] - normal[1] * self.from[1];
                 let pace = normal[0] * self.along[0] + normal[1] * self.along[1];
                 match () {
@@ -162,19 +162,19 @@ mod tests {
             let turn = f64::from(centre[0]);
             let normal = [libm::cos(turn) as f32, libm::sin(turn) as f32];
             let shape = if n % 2 == 0 {
-                Shape::Disc { centre, radius: 25.0 }
+                RegionShape::Disc { centre, radius: 25.0 }
             } else {
-                Shape::HalfPlane { normal, offset: 0.5 * centre[1] }
+                RegionShape::HalfPlane { normal, offset: 0.5 * centre[1] }
             };
-            let leg = Leg::of(from, to);
+            let leg = Segment::of(from, to);
             let region = Region { shape, is_inside: n % 3 > 0 };
             let is_in = |k: i32| {
                 let at = [0, 1].map(|i| from[i] + (to[i] - from[i]) * (k as f32 + 0.5) / 2_000.0);
                 let is_in = match shape {
-                    Shape::Disc { centre, radius } => {
+                    RegionShape::Disc { centre, radius } => {
                         (at[0] - centre[0]).powi(2) + (at[1] - centre[1]).powi(2) < radius * radius
                     }
-                    Shape::HalfPlane { normal, offset } => {
+                    RegionShape::HalfPlane { normal, offset } => {
                         at[0] * normal[0] + at[1] * normal[1] < offset
                     }
                 };

@@ -40,12 +40,12 @@ const SHIFT: f32 = 2.0;
 
 /// The rectangle that routes stay in, and the radius of a patch.
 #[derive(Clone, Copy)]
-pub(super) struct Ground {
+pub(super) struct RouteGround {
     pub(super) half: [f32; 2],
     pub(super) patch: f32,
 }
 
-impl Ground {
+impl RouteGround {
     fn any(self, random: &mut Random) -> [f32; 2] {
         self.half.map(|half| random.between([-half, half]))
     }
@@ -139,7 +139,7 @@ mod tests {
     fn patterns_and_changes_stay_in_the_rectangle() {
         let mut random = Random::START;
         for patch in [5.0, 20.0, 70.0] {
-            let ground = Ground { half: [100.0, 75.0], patch };
+            let ground = RouteGround { half: [100.0, 75.0], patch };
             let is_inside = |it: &[f32; 2]| it[0].abs() <= 100.0 && it[1].abs() <= 75.0;
             let mut route = Corners::new();
             for _ in 0..300 {

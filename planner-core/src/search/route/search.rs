@@ -1,9 +1,9 @@
 //! The search for a route: a few candidates a plan, and the best of them is kept.
 
-use crate::belief::field::{Field, Sought};
+use crate::belief::field::{BoundaryOdds, Field};
 use crate::search::route::corners::{Corners, Hears};
 use crate::search::route::cost::Costs;
-use crate::search::route::patterns::{Ground, Random};
+use crate::search::route::patterns::{Random, RouteGround};
 
 /// Visits of a region by a leg, at most: some 0.7 million instructions of a Cortex-M4F.
 const VISITS: u32 = 11_000;
@@ -71,13 +71,13 @@ impl Route {
     #[inline(never)] // what it needs is not on the stack while a motion is sought
     pub(crate) fn improve(
         &mut self,
-        (field, sought): (&Field, Sought),
+        (field, sought): (&Field, BoundaryOdds),
         (from, heart): ([f32; 2], Option<[f32; 2]>),
         hears: Hears,
     ) {
         let mut costs = Costs::new(hears, VISITS);
         costs.stand_for(field, sought);
-        let ground = Ground { half: field.layout.half, patch: field.layout.patch };
+        let ground = RouteGround { half: field.layout.half, patch: field.layout.patch };
         self.is_told = false;
         let Self { corners: best, random, .. } = self;
         let was_short = best.len() < SHORT;

@@ -19,10 +19,10 @@ use std::f64::consts::FRAC_PI_4;
 use host_sim::campaign::standard_field::{self, SIDE_M};
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::mission::names::FanName;
 use host_sim::mission::results::Ending;
 use host_sim::world::errors::CUT;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::motion::unicycle::Grid;
 use planner_core::nalgebra::Point2;
 use planner_core::{Heading, Policy, Pose, Site, Tolerance};
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ pub struct Workload {
     /// Calls of the planner after which a mission is broken off, if it is: estimates take long.
     pub calls: Option<usize>,
     /// The unicycle's actions.
-    pub grid: Grid,
+    pub grid: FanName,
     /// How labels are flipped, if they are.
     pub noise: Option<NoiseModel>,
     /// Standard deviations of reported positions, metres, by turns; the planner is told a tolerance of three.
@@ -92,7 +92,7 @@ const SMALL: Workload = Workload {
     searched: 4_000,
     sought: 4,
     calls: None,
-    grid: Grid::Paper,
+    grid: FanName::Paper,
     noise: None,
     positions: &[0.0],
     watch: None,
@@ -113,7 +113,7 @@ const SMALL_FINE: Workload = Workload {
     name: "small, look-ahead, fine fan",
     figures: &[("lookahead_fine_plan", |it| it.plans.clone())],
     everywhere: true,
-    grid: Grid::Fine,
+    grid: FanName::Fine,
     ..SMALL_LOOKAHEAD
 };
 
@@ -143,7 +143,7 @@ const STANDARD_FINE: Workload = Workload {
     name: "standard, look-ahead, fine fan",
     figures: SMALL_FINE.figures,
     everywhere: true,
-    grid: Grid::Fine,
+    grid: FanName::Fine,
     ..STANDARD_LOOKAHEAD
 };
 

@@ -14,10 +14,10 @@ use chips::emulator::{Core, Emulator};
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
+use host_sim::mission::names::FanName;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::mission::trace;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::motion::unicycle::Grid;
 use planner_core::{Accuracy, Angle, AnyVehicle, Goal, Unicycle};
 use rayon::prelude::*;
 use tests::build::{has_tool, skip};
@@ -41,11 +41,11 @@ fn of_the_unicycle() -> Vec<Mission> {
     // Most of the time goes into looking ahead: the long runs have more of it.
     for number in 0..cases(8, 40) {
         let (algorithm, is_noisy, grid) = match number % 4 {
-            0 => (Algorithm::Cfc, false, Grid::Paper),
-            1 => (Algorithm::Scc, true, Grid::Paper),
-            2 if number % 8 == 2 => (Algorithm::Lookahead, false, Grid::Paper),
-            2 => (Algorithm::Lookahead, false, Grid::Fine),
-            _ => (Algorithm::Lookahead, true, Grid::Paper),
+            0 => (Algorithm::Cfc, false, FanName::Paper),
+            1 => (Algorithm::Scc, true, FanName::Paper),
+            2 if number % 8 == 2 => (Algorithm::Lookahead, false, FanName::Paper),
+            2 => (Algorithm::Lookahead, false, FanName::Fine),
+            _ => (Algorithm::Lookahead, true, FanName::Paper),
         };
         let steps = match number % 16 {
             2 | 3 | 6 | 7 => 32, // with an audit
@@ -96,7 +96,7 @@ fn small() -> Vec<Mission> {
     let fields = (0..cases(8, 80)).map(|number| {
         let algorithm = if number % 2 == 0 { Algorithm::Cfc } else { Algorithm::Lookahead };
         let mut mission = standard_field::standard(8, number, algorithm, 24);
-        mission.vehicle = if number % 4 < 2 { Grid::Paper } else { Grid::Fine }.into();
+        mission.vehicle = if number % 4 < 2 { FanName::Paper } else { FanName::Fine }.into();
         let accuracy = Accuracy::Misclassified(5_000);
         mission.goal = (number % 8 == 7).then_some(Goal { accuracy, level: 900_000 });
         mission
