@@ -10,7 +10,7 @@ use libfuzzer_sys::fuzz_target;
 use planner_core::link::delivery::{Heard, Responder};
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{Algorithm, MissionArea, Reply, Request, Setup};
-use planner_core::motion::contract;
+use planner_core::dynamics::check;
 use planner_core::{Accuracy, AnySight, AnyVehicle, Label, Plan, Planner, Pose, Prior, Reading, sequences_of};
 
 /// Steps that a mission is flown for.
@@ -86,7 +86,7 @@ fuzz_target!(|bytes: &[u8]| {
             else {
                 continue;
             };
-            contract::check(&terms.dynamics).expect("what is no vehicle is declined");
+            check(&terms.dynamics).expect("what is no vehicle is declined");
             match setup.algorithm {
                 Algorithm::Cfc => {
                     if let Ok(mut prepared) = setup.cfc::<_, _, SAMPLES>(terms) {

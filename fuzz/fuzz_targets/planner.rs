@@ -6,18 +6,11 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use planner_core::dynamics::Dynamics;
+use planner_core::dynamics::{Dynamics, check};
 use planner_core::error::ObservationError;
-use planner_core::geometry::lattice::orient;
-use planner_core::motion::contract;
-use planner_core::planner::lookahead::EVALUATIONS;
-use planner_core::search::objective::{EffortWeight, LOOKS};
-use planner_core::{
-    Accuracy, Angle, Area, Belief, CellPosterior, Certainty, Cfc, Crossing, Following, Goal,
-    Heading, Holonomic, Label, Lookahead, Motion, Noise, NoisyBelief, Options, Plan, Planner,
-    Policy, Pose, PosteriorView, PredictiveBelief, Prior, Reading, Reliability, Sample, Scc, Site,
-    Stage, StopReason, Tolerance, Unicycle, VersionSpace,
-};
+use planner_core::lattice::orient;
+use planner_core::parts::{EVALUATIONS, LOOKS};
+use planner_core::{Accuracy, Angle, Area, Belief, CellPosterior, Certainty, Cfc, Crossing, EffortWeight, Following, Goal, Heading, Holonomic, Label, Lookahead, Motion, Noise, NoisyBelief, Options, Plan, Planner, Policy, Pose, PosteriorView, PredictiveBelief, Prior, Reading, Reliability, Sample, Scc, Site, Stage, StopReason, Tolerance, Unicycle, VersionSpace};
 
 /// Actions that are tried one by one, at most.
 const FEW: u64 = 3_000;
@@ -75,7 +68,7 @@ impl World {
 }
 
 fn run<D: Dynamics + Copy>(case: &Case, dynamics: D, world: &World) -> Option<()> {
-    contract::check(&dynamics).expect("what the constructors take keeps the contract");
+    check(&dynamics).expect("what the constructors take keeps the contract");
     let oracle: Vec<_> = case
         .oracle
         .iter()

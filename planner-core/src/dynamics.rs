@@ -5,5 +5,5 @@
 
 pub use crate::motion::action::{Action, ActionGrid, Control};
 pub use crate::motion::contract::check;
-pub use crate::motion::dynamics::{Dynamics, Ray, RayFan, Side, TurningCircle};
+pub use crate::motion::dynamics::{Dynamics, Ray, RayFan, Side, TurningCircle, room_for_errors};
 pub use crate::motion::pivots::Pivots;

@@ -1,13 +1,8 @@
 #![no_std]
 #![forbid(unsafe_code)]
-#![cfg_attr(not(feature = "internals"), deny(unnameable_types))]
+#![deny(dead_code, unnameable_types)]
 #![deny(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::panic, clippy::indexing_slicing))]
-// Some of it serves the simulator and the tests of this repository alone.
-#![cfg_attr(
-    not(feature = "internals"),
-    allow(dead_code, unreachable_pub, rustdoc::private_intra_doc_links)
-)]
 
 //! A planner that finds and maps a boundary, straight or bending, from few yes-or-no readings.
 //!
@@ -136,40 +131,25 @@
 //!   [`Step::alarm`] says when the labels speak against it.
 //! - [`Cfc`] and [`Scc`] look one step ahead, [`Lookahead`] two.
 
-#[cfg(not(feature = "internals"))]
 mod belief;
-#[cfg(feature = "internals")]
-pub mod belief;
 #[cfg(test)]
 mod draws;
 pub mod dynamics;
 pub mod error;
-#[cfg(not(feature = "internals"))]
 mod geometry;
-#[cfg(feature = "internals")]
-pub mod geometry;
+pub mod lattice;
 #[cfg(feature = "link")]
 pub mod link;
-#[cfg(not(feature = "internals"))]
 mod motion;
-#[cfg(feature = "internals")]
-pub mod motion;
 pub mod parts;
-#[cfg(not(feature = "internals"))]
 mod planner;
-#[cfg(feature = "internals")]
-pub mod planner;
 pub mod robot;
-#[cfg(not(feature = "internals"))]
 mod search;
-#[cfg(feature = "internals")]
-pub mod search;
 pub mod watch;
 
 pub use nalgebra;
 
 pub use crate::belief::Belief;
-pub use crate::belief::bounds;
 pub use crate::belief::cells::{CellView, Certainty};
 pub use crate::belief::curve::{Curve, CurveMemory, MapPlace};
 pub use crate::belief::deviation::Deviation;
@@ -191,6 +171,7 @@ pub use crate::belief::true_labels::VersionSpace;
 pub use crate::belief::trust::{AnyReliability, Trust};
 pub use crate::belief::unknown_reliability::UnknownReliability;
 pub use crate::belief::weight::Prior;
+pub use crate::belief::{bounds, estimate};
 pub use crate::geometry::arc::SlopeArc;
 pub use crate::geometry::area::Area;
 pub use crate::geometry::chart::Chart;

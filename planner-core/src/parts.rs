@@ -1,4 +1,5 @@
-//! What signatures name and programs seldom do: parts of beliefs, of searches and of snapshots.
+//! What signatures name and programs seldom do: parts of beliefs, of searches and of snapshots, and how much a
+//! plan does at most.
 //!
 //! A program that is generic over beliefs, or that keeps such a part in a structure of its own, finds its type here.
 
@@ -22,12 +23,14 @@ pub use crate::planner::cfc::Phase;
 pub use crate::planner::decision::Decision;
 pub use crate::planner::far::Journey;
 pub use crate::planner::lap::Lap;
+pub use crate::planner::lookahead::EVALUATIONS;
 pub use crate::planner::quest::QuestMemory;
+pub use crate::planner::scout::LOOKED_AT;
 pub use crate::planner::seek::SeekMemory;
 pub use crate::planner::silence::Silence;
 pub use crate::planner::track::TrackMemory;
 pub use crate::search::direction_rule::{ArcRule, DirectionRule};
 pub use crate::search::lookout::Lookout;
-pub use crate::search::objective::Choice;
+pub use crate::search::objective::{Choice, LOOKS};
 pub use crate::search::problem::{Problem, Solution};
 pub use crate::search::route::Route;

@@ -9,9 +9,8 @@ use host_sim::mission::definition::Mission;
 use planner_core::link::delivery::{Link, LinkError, Port};
 use planner_core::link::message::{self, ClockRate, LabelSource, MissionArea};
 use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
-use planner_core::motion::any_vehicle::AnyVehicle;
 use planner_core::robot::LabelSensor;
-use planner_core::{AnySight, Reading};
+use planner_core::{AnySight, AnyVehicle, Reading};
 
 use crate::wire::Wire;
 

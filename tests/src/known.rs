@@ -5,12 +5,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::given::Lines;
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::cells::Certainty;
-use planner_core::belief::doubtful_labels::CellPosterior;
-use planner_core::belief::noise::{Noise, Reliability};
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::belief::weight::Prior;
-use planner_core::geometry::lattice::Site;
+use planner_core::{CellPosterior, Certainty, Label, Noise, Prior, Reliability, Sample, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -13,8 +13,8 @@
 use std::env;
 use std::sync::LazyLock;
 
-use planner_core::belief::sample::{Label, Sample};
-use planner_core::geometry::lattice::{LIMIT, Site, Vector};
+use planner_core::lattice::LIMIT;
+use planner_core::{Label, Sample, Site, Vector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

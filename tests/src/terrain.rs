@@ -4,11 +4,9 @@ use std::f64::consts::TAU;
 
 use host_sim::mission::definition::Mission;
 use nalgebra::Point2;
-use planner_core::geometry::hull::Hull;
-use planner_core::geometry::lattice::{Site, UNITS_PER_METRE};
-use planner_core::geometry::polygon_area::KeepOut;
-use planner_core::geometry::workspace::Workspace as _;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MissionArea};
+use planner_core::{Hull, KeepOut, Site, Workspace as _};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 

@@ -15,8 +15,7 @@ use planner_core::link::frame::Frame;
 use planner_core::link::message::{
     self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
 };
-use planner_core::planner::Stage;
-use planner_core::{Estimates, FrontState, Motion, Plan, Pose, Reading, Site, Step};
+use planner_core::{Estimates, FrontState, Motion, Plan, Pose, Reading, Site, Stage, Step};
 
 use crate::hil::logbook::{Logbook, Sensed};
 use crate::hil::setup;

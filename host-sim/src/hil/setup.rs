@@ -2,11 +2,10 @@
 
 use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
-use planner_core::link::message::Settings;
 use planner_core::link::message::{
-    self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Setup,
+    self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Settings, Setup,
 };
-use planner_core::planner::lookahead;
+use planner_core::parts::EVALUATIONS;
 use planner_core::{AnySight, FrontStretch, Seeking, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;
@@ -63,7 +62,7 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
             message::Algorithm::Scc { noise, policy: mission.policy, prior: mission.prior }
         }
         Algorithm::Lookahead => message::Algorithm::Lookahead {
-            evaluations: lookahead::EVALUATIONS,
+            evaluations: EVALUATIONS,
             goal: mission.goal,
             noise: mission.noise.map(|_| (noise, mission.prior)),
             sight: mission.sight(),

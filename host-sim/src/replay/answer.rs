@@ -2,8 +2,7 @@
 
 use anyhow::{Context as _, Result, anyhow};
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::estimate;
-use planner_core::{Area, Belief as _, Label, Line, Sample, VersionSpace};
+use planner_core::{Area, Belief as _, Label, Line, Sample, VersionSpace, estimate};
 
 use crate::fitting::doubt::{Doubt, Votes};
 use crate::fitting::explanation::{Explanation, Question};

@@ -9,10 +9,9 @@
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::float::simplify::SimplifyShape as _;
 use nalgebra::{Point2, Vector2};
-use planner_core::PosteriorView;
-use planner_core::geometry::lattice::Vector;
-use planner_core::geometry::line::Bound;
 use planner_core::link::message::MissionArea;
+use planner_core::parts::Bound;
+use planner_core::{PosteriorView, Vector};
 use serde::Serialize;
 
 use crate::mission::definition::Table;

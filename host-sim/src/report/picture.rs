@@ -1,11 +1,12 @@
 //! The content of a figure: plain data, made from a mission's results and the final knowledge.
 
 use nalgebra::{Point2, Rotation2, Vector2};
-use planner_core::belief::estimate;
-use planner_core::belief::evidence::Alarm;
-use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE, Vector};
+use planner_core::lattice::{LIMIT, UNITS_PER_METRE};
 use planner_core::link::message::MissionArea;
-use planner_core::{AnyVehicle, Area, Label, Line, PosteriorView, Reading, Sample, Site, Stage};
+use planner_core::watch::Alarm;
+use planner_core::{
+    AnyVehicle, Area, Label, Line, PosteriorView, Reading, Sample, Site, Stage, Vector, estimate,
+};
 use serde::Serialize;
 
 use crate::mission::definition::{Mission, Table};

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use planner_core::Line;
-use planner_core::belief::evidence::{Alarm, Suspect};
+use planner_core::watch::{Alarm, Suspect};
 
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{ToleranceRecord, tidy};

@@ -22,27 +22,27 @@
 //! Nothing here knows how the robot moves.
 
 pub mod bounds;
-pub mod cells;
-pub mod curve;
-pub mod deviation;
-pub mod doubtful_labels;
+pub(crate) mod cells;
+pub(crate) mod curve;
+pub(crate) mod deviation;
+pub(crate) mod doubtful_labels;
 pub mod estimate;
-pub mod evidence;
-pub mod field;
-pub mod front;
-pub mod goal;
-pub mod lines;
+pub(crate) mod evidence;
+pub(crate) mod field;
+pub(crate) mod front;
+pub(crate) mod goal;
+pub(crate) mod lines;
 pub(crate) mod list;
-pub mod noise;
-pub mod observation_log;
-pub mod predictions;
-pub mod reliability;
-pub mod sample;
-pub mod tolerance;
-pub mod true_labels;
-pub mod trust;
-pub mod unknown_reliability;
-pub mod weight;
+pub(crate) mod noise;
+pub(crate) mod observation_log;
+pub(crate) mod predictions;
+pub(crate) mod reliability;
+pub(crate) mod sample;
+pub(crate) mod tolerance;
+pub(crate) mod true_labels;
+pub(crate) mod trust;
+pub(crate) mod unknown_reliability;
+pub(crate) mod weight;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::goal::{Criterion, Goal};

@@ -8,7 +8,7 @@ use crate::geometry::lattice::Site;
 use crate::geometry::mark::Mark;
 use crate::geometry::value::ValueError;
 
-pub use crate::belief::reliability::Reliability;
+use crate::belief::reliability::Reliability;
 
 /// What is known of the noise. `R` is a [`Reliability`] where the probability of a true label is known, otherwise an
 /// [`UnknownReliability`].
@@ -19,7 +19,7 @@ pub struct Noise<R = Reliability> {
     /// How far a label can be believed.
     pub reliability: R,
     /// Within this distance of a given sample's site labels are certain, lattice units; see
-    /// [`trusted_radius`].
+    /// [`Noise::radius`].
     pub trusted_radius: u32,
     /// How far a position may be from where it is reported; three standard deviations.
     pub tolerance: Tolerance,
@@ -42,6 +42,11 @@ impl Noise {
             return Err(RANGE);
         }
         Ok(Self { reliability: Reliability::new(p)?, ..Self::NONE })
+    }
+
+    /// A trusted radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
+    pub fn radius(metres: f64) -> Option<u32> {
+        u32::try_from(Site::metres([metres, 0.0]).ok()?.x()).ok()
     }
 
     /// The same for positions that err by a tolerance at most, metres or a [`Tolerance`].
@@ -103,10 +108,4 @@ impl From<Noise<UnknownReliability>> for Noise<AnyReliability> {
     fn from(Noise { reliability, trusted_radius, tolerance }: Noise<UnknownReliability>) -> Self {
         Self { reliability: reliability.into(), trusted_radius, tolerance }
     }
-}
-
-/// A radius in metres as lattice units; `None` when it is negative, not finite, or 8,192 m or more.
-pub fn trusted_radius(metres: f64) -> Option<u32> {
-    let inside = Site::try_from(nalgebra::Point2::new(metres, 0.0)).ok()?;
-    u32::try_from(inside.x()).ok()
 }

@@ -6,7 +6,7 @@
 use heapless::Vec;
 
 use crate::belief::ObservationError;
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::Sample;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::{GivenError, VersionSpace};

@@ -90,7 +90,7 @@ impl Sample {
 /// The buffer is full; the sample that did not fit is handed back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct BufferFullError(pub Sample);
+pub(crate) struct BufferFullError(pub Sample);
 
 impl core::fmt::Display for BufferFullError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
@@ -104,13 +104,13 @@ impl core::error::Error for BufferFullError {}
 ///
 /// Reads as a slice of [`Sample`].
 #[derive(Clone, Debug)]
-pub struct SampleBuffer<const N: usize> {
+pub(crate) struct SampleBuffer<const N: usize> {
     samples: Vec<Sample, N, u8>,
 }
 
 impl<const N: usize> SampleBuffer<N> {
     /// An empty buffer.
-    pub const fn new() -> Self {
+    pub(crate) const fn new() -> Self {
         const {
             assert!(N >= 3, "three samples are the fewest that bound a line");
             assert!(N <= 128, "a cell names its samples by seven bits");
@@ -122,7 +122,7 @@ impl<const N: usize> SampleBuffer<N> {
     ///
     /// # Errors
     /// [`BufferFullError`] with the sample when `N` are held already.
-    pub fn push(&mut self, sample: Sample) -> Result<u8, BufferFullError> {
+    pub(crate) fn push(&mut self, sample: Sample) -> Result<u8, BufferFullError> {
         let index = self.samples.len() as u8;
         self.samples.push(sample).map_err(BufferFullError)?;
         Ok(index)
@@ -147,7 +147,7 @@ impl<const N: usize> SampleBuffer<N> {
     }
 
     /// Whether another sample would be refused.
-    pub fn is_full(&self) -> bool {
+    pub(crate) fn is_full(&self) -> bool {
         self.samples.is_full()
     }
 }

@@ -11,9 +11,6 @@ use crate::geometry::area::Area;
 use crate::geometry::hull::{Extent, edges};
 use crate::geometry::lattice::{LIMIT, Site, Vector};
 
-/// A chart has so many rows and columns at most.
-pub const MOST_CELLS: u16 = 256;
-
 /// Open and closed cells. All ground outside of them is closed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chart<'a> {
@@ -30,7 +27,7 @@ pub struct Chart<'a> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ChartError {
-    /// There are from 1 to [`MOST_CELLS`] rows and as many columns.
+    /// There are from 1 to [`Chart::MOST_CELLS`] rows and as many columns.
     Size,
     /// Cells have a side, and all of the chart lies within 8,192 m of the origin.
     Beyond,
@@ -41,7 +38,7 @@ pub enum ChartError {
 impl core::fmt::Display for ChartError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Size => write!(f, "a chart has 1 to {MOST_CELLS} rows and columns"),
+            Self::Size => write!(f, "a chart has 1 to {} rows and columns", Chart::MOST_CELLS),
             Self::Beyond => f.write_str("a chart lies within 8192 m of the origin"),
             Self::Words(words) => write!(f, "a chart of this size has {words} words"),
         }
@@ -51,6 +48,9 @@ impl core::fmt::Display for ChartError {
 impl core::error::Error for ChartError {}
 
 impl<'a> Chart<'a> {
+    /// A chart has so many rows and columns at most.
+    pub const MOST_CELLS: u16 = 256;
+
     /// Cells by rows, that of the least z first. A row is so many [words](Self::words_in) long. Bit `k` of its word `w` is
     /// column `32 w + k`, counted from the least x, and 1 is open. `side` is that of a cell, lattice units.
     ///
@@ -62,7 +62,7 @@ impl<'a> Chart<'a> {
         [columns, rows]: [u16; 2],
         cells: &'a [u32],
     ) -> Result<Self, ChartError> {
-        let is_count = |it: u16| (1..=MOST_CELLS).contains(&it);
+        let is_count = |it: u16| (1..=Self::MOST_CELLS).contains(&it);
         if !is_count(columns) || !is_count(rows) {
             return Err(ChartError::Size);
         }

@@ -288,7 +288,8 @@ impl Message for Reply {
 mod tests {
     use super::*;
     use crate::belief::front::{Front, Waist};
-    use crate::belief::noise::{Noise, Reliability};
+    use crate::belief::noise::Noise;
+    use crate::belief::reliability::Reliability;
     use crate::belief::sample::{Label, Sample};
     use crate::belief::tolerance::Tolerance;
     use crate::belief::weight::Prior;

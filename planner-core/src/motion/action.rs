@@ -19,7 +19,7 @@ pub struct Control {
     /// How far to drive, metres: the paper's `v` in one unit of time.
     #[cfg_attr(feature = "serde", serde(rename = "v"))]
     pub distance_m: f32,
-    /// How far to turn before the drive, or all along it for a [car](crate::motion::car), radians; positive to the left.
+    /// How far to turn before the drive, or all along it for a [car](crate::Car), radians; positive to the left.
     /// The paper's `w`.
     #[cfg_attr(feature = "serde", serde(rename = "w"))]
     pub turn_rad: f32,

@@ -5,12 +5,12 @@
 //! direction. A [`car`] and a [`boat`] cannot turn on the spot. [`any_vehicle`] is a vehicle that is chosen while the
 //! program runs. [`contract`] checks a vehicle of your own. Nothing here knows of the line.
 
-pub mod action;
-pub mod any_vehicle;
-pub mod boat;
-pub mod car;
-pub mod contract;
-pub mod dynamics;
-pub mod holonomic;
-pub mod pivots;
-pub mod unicycle;
+pub(crate) mod action;
+pub(crate) mod any_vehicle;
+pub(crate) mod boat;
+pub(crate) mod car;
+pub(crate) mod contract;
+pub(crate) mod dynamics;
+pub(crate) mod holonomic;
+pub(crate) mod pivots;
+pub(crate) mod unicycle;

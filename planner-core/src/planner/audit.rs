@@ -19,8 +19,8 @@
 //! where a motion brings the vehicle no nearer: a car may circle about a place at which it cannot arrive. A place that
 //! cannot be visited is left out.
 
-use crate::belief::noise::Reliability;
 use crate::belief::predictions::{AuditLabel, PLACES, PredictiveBelief, Verdict, Verdicts};
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Reading, Sample};
 use crate::geometry::approximate::distance;
 use crate::geometry::area::Area;

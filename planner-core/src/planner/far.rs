@@ -45,7 +45,7 @@ const END: f32 = 0.01;
 const TRIES: usize = 3;
 
 /// The looks of these ways together.
-pub(crate) const LOOKS: u32 = 2_048;
+pub(crate) const FAR_LOOKS: u32 = 2_048;
 
 /// A way may take so many motions more than it seems to at its beginning. One that needs more goes round about its place.
 const MORE: u16 = 2;
@@ -149,7 +149,7 @@ impl Far {
             Rest::Over => {}
         }
         journey.next = journey.now;
-        let mut effort = Effort::within(&lookout.area, LOOKS);
+        let mut effort = Effort::within(&lookout.area, FAR_LOOKS);
         for FarPlace { site, worth } in places.list.into_iter().take_while(|it| it.worth > most) {
             let tells = |site| tells(belief, predictor, lookout, site, WORTHWHILE);
             let to = (site, nearness(lookout));

@@ -11,7 +11,7 @@
 //! 3. considers turns in place as well, if no end is worth much;
 //! 4. climbs the recovery ladder, as Algorithm 1 does, if there is no such motion.
 //!
-//! With a [`Goal`] it stops when that is met, after an [`audit`](crate::planner::audit).
+//! With a [`Goal`] it stops when that is met, after an [audit](crate::watch::Audit).
 //!
 //! The search is anytime: a plan evaluates at most [`EVALUATIONS`] ends and keeps the best found so far. The order of
 //! the ends does not depend on the limit. So a higher limit never gives a worse motion by the plan's own measure.
@@ -221,7 +221,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         Self { evaluations, ..self }
     }
 
-    /// The same, but it stops when the belief meets the goal and an [`audit`](crate::planner::audit) has found no label
+    /// The same, but it stops when the belief meets the goal and an [audit](crate::watch::Audit) has found no label
     /// against it. `None` means no goal.
     #[must_use]
     #[inline]
@@ -503,7 +503,7 @@ mod tests {
 
     use super::*;
     use crate::belief::cells::Certainty;
-    use crate::belief::noise::Reliability;
+    use crate::belief::reliability::Reliability;
     use crate::belief::sample::Label;
     use crate::belief::true_labels::VersionSpace;
     use crate::geometry::heading::Heading;

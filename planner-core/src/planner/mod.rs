@@ -15,31 +15,31 @@
 
 mod aim;
 mod along;
-pub mod audit;
-pub mod cfc;
-pub mod decision;
-pub mod far;
-pub mod front_state;
+pub(crate) mod audit;
+pub(crate) mod cfc;
+pub(crate) mod decision;
+pub(crate) mod far;
+pub(crate) mod front_state;
 mod hunt;
-pub mod lap;
+pub(crate) mod lap;
 mod led;
-pub mod lookahead;
+pub(crate) mod lookahead;
 pub(crate) mod one_label;
-pub mod options;
+pub(crate) mod options;
 mod outlook;
-pub mod quest;
-pub mod scc;
-pub mod scout;
-pub mod seek;
-pub mod setup;
-pub mod sight;
-pub mod silence;
-pub mod snapshot;
+pub(crate) mod quest;
+pub(crate) mod scc;
+pub(crate) mod scout;
+pub(crate) mod seek;
+pub(crate) mod setup;
+pub(crate) mod sight;
+pub(crate) mod silence;
+pub(crate) mod snapshot;
 pub(crate) mod stretch;
-pub mod track;
+pub(crate) mod track;
 mod turns;
 mod vote;
-pub mod watched;
+pub(crate) mod watched;
 
 use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Alarm;
@@ -70,7 +70,7 @@ pub enum Stage {
     P4,
     /// No problem of the paper: visit ground that is certain, before a goal counts as met.
     Audit,
-    /// Look for a [front](crate::planner::track) that is not found yet, or is lost.
+    /// Look for a [front](crate::Track) that is not found yet, or is lost.
     Seek,
     /// Go along a front.
     Follow,
@@ -157,14 +157,14 @@ pub enum StopReason {
     /// often where labels may be wrong; or the labels of the whole mission amount to an alarm. The boundary bends or moves,
     /// or the sensor fails. A shorter stretch, or a tolerance that covers the bend, may help.
     ///
-    /// [audit]: crate::planner::audit
+    /// [audit]: crate::watch::Audit
     NoLine,
     /// No label was in sight that is expected to carry the [least bits] asked for, for up to sixteen motions. Fewer bits let
     /// the mission go on.
     ///
     /// [least bits]: crate::planner::sight::AnySight::with_least_bits
     Worth,
-    /// The robot has gone along all of a [front](crate::planner::track): it is back where it found it, or the front has led it
+    /// The robot has gone along all of a [front](crate::Track): it is back where it found it, or the front has led it
     /// out of the area at both ends.
     Closed,
     /// All of the area most likely has one label: no patch of the radius that was sought is left, and no boundary that

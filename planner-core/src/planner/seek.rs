@@ -48,7 +48,7 @@ use crate::planner::snapshot::{Kind, Persist, RestoreError, Snapshot};
 use crate::planner::{Plan, Planner, StopReason};
 
 /// Samples that it lends at most.
-pub const GIVEN: usize = 15;
+pub(crate) const GIVEN: usize = 15;
 
 /// What a label costs, as a share of the mean of the area's sides.
 const PRICE: f32 = 0.125;

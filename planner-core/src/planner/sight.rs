@@ -6,7 +6,7 @@ use crate::geometry::value::ValueError;
 use crate::geometry::workspace::Workspace;
 use crate::motion::dynamics::{Dynamics, Pose};
 use crate::planner::decision::Decision;
-use crate::planner::far::{Far, Journey, LOOKS};
+use crate::planner::far::{FAR_LOOKS, Far, Journey};
 use crate::search::lookout::Lookout;
 
 /// How far look-ahead looks for labels: [`Near`] or [`Far`]. A program that is told at run time has [`AnySight`].
@@ -86,7 +86,7 @@ impl Sight for Far {
     }
 
     fn looks(self) -> u32 {
-        LOOKS
+        FAR_LOOKS
     }
 
     fn decide<B: PredictiveBelief, D: Dynamics, G: Workspace, C: Criterion>(

@@ -140,13 +140,6 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         Self::made((area, dynamics), (front, 0.0), noise.into())
     }
 
-    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for), for one that is
-    /// [restarted](Restart::restart) before it plans.
-    #[inline]
-    pub(crate) fn of(of: (G, D), front: Front, ends: bool) -> Self {
-        Self { ends, ..Self::blank(of, (front, 0.0)) }
-    }
-
     /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been
     /// followed to the border at both ends. Of [several](Seeking::several) patches it seeks the next one first.
     #[must_use]
@@ -179,12 +172,6 @@ impl<D: Dynamics, G: Workspace> Guard<D, G> {
         Self::made((area, dynamics), (front, stretch.length()), noise.into())
     }
 
-    /// As [`Track::of`].
-    #[inline]
-    pub(crate) fn guard_of(of: (G, D), front: Front, stretch: FrontStretch) -> Self {
-        Self::blank(of, (front, stretch.length()))
-    }
-
     /// The middle of the stretch, and its direction. `None` before the front is found.
     pub fn stretch(&self) -> Option<Pose> {
         self.stretch.middle()
@@ -199,7 +186,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         noise: Noise<AnyReliability>,
     ) -> Result<Self, SetupError> {
         let area = aimed_for(area, &dynamics, noise.tolerance)?;
-        let mut track = Self::blank((area, dynamics), told);
+        let mut track = Self::blank((area, dynamics), told, false);
         track.hunt.lines.restart(area.whole().bounds(), noise, &[]);
         track.begin_curve(noise);
         // The usual radius of a patch suits every area.
@@ -207,8 +194,10 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         Ok(track)
     }
 
+    /// One in the part of an area that motions [aim for](crate::planner::setup::aimed_for), which is
+    /// [restarted](Restart::restart) before it plans. A stretch of no length is not watched.
     #[inline]
-    fn blank(of: (G, D), (front, stretch): (Front, f32)) -> Self {
+    pub(crate) fn blank(of: (G, D), (front, stretch): (Front, f32), ends: bool) -> Self {
         Self {
             hunt: Hunt::of(of, Lines::blank()),
             front,
@@ -217,7 +206,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
             stretch: WatchedStretch::new(stretch),
             heard_at: None,
             turns: Turns::default(),
-            ends: false,
+            ends,
             led: None,
         }
     }

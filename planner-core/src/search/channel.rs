@@ -6,7 +6,7 @@
 //! block in sight of the robot, which is where the first leg goes.
 
 use crate::geometry::approximate::distance;
-use crate::geometry::chart::{Chart, MOST_CELLS};
+use crate::geometry::chart::Chart;
 use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::workspace::Workspace;
 use crate::search::objective::Effort;
@@ -59,7 +59,7 @@ struct Channel<'a, G> {
 
 impl<'a, G: Workspace> Channel<'a, G> {
     fn of(area: &'a G, chart: Chart<'a>) -> Self {
-        const { assert!(MOST_CELLS <= 4 * BLOCKS, "a block has four by four cells at most") };
+        const { assert!(Chart::MOST_CELLS <= 4 * BLOCKS, "a block has four by four cells at most") };
         let [columns, rows] = chart.size();
         Self { area, chart, cells: columns.max(rows).div_ceil(BLOCKS) }
     }

@@ -48,13 +48,13 @@ impl DirectionRule for ArcRule {
 /// Up to eight that are apart. A further one is joined to the first, with all that lies between:
 /// hypotheses that nothing was pruned from leave no gaps at all.
 #[derive(Clone, Debug, Default)]
-pub struct ArcUnion {
+pub(crate) struct ArcUnion {
     arcs: Vec<SlopeArc, 8, u8>,
 }
 
 impl ArcUnion {
     /// The arcs, of which no two overlap.
-    pub fn arcs(&self) -> &[SlopeArc] {
+    pub(crate) fn arcs(&self) -> &[SlopeArc] {
         &self.arcs
     }
 
@@ -87,7 +87,7 @@ impl FromIterator<SlopeArc> for ArcUnion {
 
 /// A rule by a union of arcs: the direction must lie in one of them, or in none.
 #[derive(Clone, Copy, Debug)]
-pub struct UnionRule<'a> {
+pub(crate) struct UnionRule<'a> {
     /// The arcs.
     pub arcs: &'a [SlopeArc],
     /// Whether the direction must lie among them.

@@ -2,9 +2,7 @@
 
 use std::cell::Cell;
 
-use planner_core::geometry::lattice::Vector;
-use planner_core::geometry::workspace::{HalfPlane, Obstacle};
-use planner_core::{Area, Chart, Site, Workspace};
+use planner_core::{Area, Chart, HalfPlane, Obstacle, Site, Vector, Workspace};
 
 thread_local! {
     static ASKED: Cell<u64> = const { Cell::new(0) };

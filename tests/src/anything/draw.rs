@@ -10,14 +10,13 @@ use host_sim::world::World;
 use host_sim::world::errors::Errors;
 use host_sim::world::noise::{Extent, NoiseModel, limit};
 use nalgebra::{Point2, Vector2};
-use planner_core::CarShape;
 use planner_core::bounds::slope_within_degrees;
 use planner_core::dynamics::ActionGrid;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use planner_core::{
-    Accuracy, Angle, AnyVehicle, Boat, Car, Goal, Heading, Hull, KeepOut, Label, Line, Pose,
-    Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
+    Accuracy, Angle, AnyVehicle, Boat, Car, CarShape, Goal, Heading, Hull, KeepOut, Label, Line,
+    Pose, Sample, Site, Tolerance, Unicycle, VersionSpace, Workspace as _, aimed_for,
 };
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;

@@ -10,7 +10,7 @@ use host_sim::mission::results::Ending;
 use host_sim::world::errors::{CUT, Errors};
 use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
-use planner_core::planner::scout::LOOKED_AT;
+use planner_core::parts::LOOKED_AT;
 use planner_core::{
     AnyVehicle, Belief as _, Certainty, Motion, Persist, Plan, Planner, Pose, Sample, StopReason,
     Tolerance, VersionSpace, Workspace as _,

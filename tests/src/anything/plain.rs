@@ -3,7 +3,7 @@
 
 use host_sim::mission::definition::Mission;
 use nalgebra::Point2;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
 use planner_core::{Pose, Site};
 
@@ -36,7 +36,7 @@ impl Ground {
     /// The ground of an area.
     pub fn of(area: &MissionArea) -> Self {
         let points = |sites: &[Site]| sites.iter().map(|site| metres(*site)).collect::<Vec<_>>();
-        let keep_out = |it: &planner_core::geometry::polygon_area::KeepOut<_>| {
+        let keep_out = |it: &planner_core::KeepOut<_>| {
             (points(it.hull.corners()), f64::from(it.radius) / f64::from(UNITS_PER_METRE))
         };
         Self {

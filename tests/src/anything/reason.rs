@@ -4,10 +4,10 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::ReadOut;
 use host_sim::mission::results::Ending;
 use host_sim::mission::terrain::Terrain;
-use planner_core::belief::cells::CellView;
 use planner_core::dynamics::{Dynamics, Side};
-use planner_core::geometry::lattice::Vector;
-use planner_core::{Area, Certainty, Label, Pose, Site, StopReason, Workspace as _};
+use planner_core::{
+    Area, CellView, Certainty, Label, Pose, Site, StopReason, Vector, Workspace as _,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

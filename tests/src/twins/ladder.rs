@@ -4,11 +4,9 @@
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Ray, Side};
-use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
-use planner_core::search::direction_rule::ArcRule;
-use planner_core::search::problem::Problem;
-use planner_core::search::recovery::Recovery;
-use planner_core::{Certainty, Line, Pose, Site, StopReason, Workspace};
+use planner_core::lattice::UNITS_PER_METRE;
+use planner_core::parts::{ArcRule, Problem};
+use planner_core::{Certainty, Line, Pose, Recovery, Site, StopReason, Vector, Workspace};
 
 /// Motions that a transit among uncertain ground looks ahead.
 const HORIZON: u32 = 16;

@@ -1,14 +1,13 @@
 //! Dynamics: accepted parameters keep the contract, refused ones are named, and a broken promise is found.
 
 use nalgebra::Point2;
-use planner_core::CarShape;
 use planner_core::dynamics::{
-    Action, ActionGrid, Control, Dynamics, Ray, RayFan, Side, TurningCircle,
+    Action, ActionGrid, Control, Dynamics, Ray, RayFan, Side, TurningCircle, check,
 };
 use planner_core::error::{ContractError, GridError, LatticeError};
-use planner_core::geometry::lattice::Vector;
-use planner_core::motion::contract::{self};
-use planner_core::{Angle, Area, Boat, Car, Heading, Holonomic, Pose, Site, Unicycle};
+use planner_core::{
+    Angle, Area, Boat, Car, CarShape, Heading, Holonomic, Pose, Site, Unicycle, Vector,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::cases;
@@ -21,7 +20,7 @@ use std::fmt::Debug;
 #[test]
 fn what_the_constructors_take_keeps_the_contract() {
     fn keeps<D: Dynamics + Debug>(it: &D) -> u32 {
-        assert_eq!(contract::check(it), Ok(()), "{it:?}");
+        assert_eq!(check(it), Ok(()), "{it:?}");
         1
     }
     let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(1));
@@ -323,7 +322,7 @@ fn each_broken_promise_is_named() {
         (Breaks::TurnsTheOtherWay, Err(Error::TurnInPlace(left))),
         (Breaks::TurnsBeyond, Err(Error::TurnInPlace(left))),
     ] {
-        assert_eq!(contract::check(&Faulty(unicycle, breaks)), broken, "{breaks:?}");
+        assert_eq!(check(&Faulty(unicycle, breaks)), broken, "{breaks:?}");
     }
     // Also of rays that are too many to look at them all.
     for (breaks, broken) in [
@@ -331,7 +330,7 @@ fn each_broken_promise_is_named() {
         (Breaks::Spacing, Err(Error::Spacing(left, 1))),
         (Breaks::Twice, Err(Error::Index(left, 1))),
     ] {
-        assert_eq!(contract::check(&Faulty(Unicycle::fine(), breaks)), broken, "{breaks:?}");
+        assert_eq!(check(&Faulty(Unicycle::fine(), breaks)), broken, "{breaks:?}");
     }
     let (speeds, speed_step_mm) = (21, 100);
     let (radius_mm, shortest_mm, turn_step_urad) = (3_000, 500, 50_000);
@@ -352,7 +351,7 @@ fn each_broken_promise_is_named() {
         (Breaks::LeavesItsRadius, Err(Error::TurningCircle(left))),
         (Breaks::LeavesItsCentre, Err(Error::TurningCircle(left))),
     ] {
-        assert_eq!(contract::check(&Faulty(car, breaks)), broken, "{breaks:?}");
+        assert_eq!(check(&Faulty(car, breaks)), broken, "{breaks:?}");
     }
 }
 
@@ -362,7 +361,7 @@ fn each_broken_promise_is_named() {
 fn numbers_of_rays_and_actions_do_not_overflow() {
     for (bearings, speeds) in [(65_537, 1), (u32::MAX, 1), (1 << 31, 2), (3 << 29, 2)] {
         let most = Holonomic::new(bearings, speeds, 1).expect("a grid");
-        assert_eq!(contract::check(&most), Ok(()), "{bearings}");
+        assert_eq!(check(&most), Ok(()), "{bearings}");
         let [nearest, _] = most.around(pose(0), Heading(123_456_789));
         let spacing = u32::MAX / bearings + 1;
         assert!(apart(nearest.heading, Heading(123_456_789)) <= spacing, "{bearings}: {nearest:?}");
@@ -370,7 +369,7 @@ fn numbers_of_rays_and_actions_do_not_overflow() {
     let (fine, facing) = (Unicycle::fine(), pose(7));
     let grid = fine.grid();
     assert_eq!((grid.rays(), grid.actions()), (3_141_595, 65_973_495));
-    assert_eq!(contract::check(&fine), Ok(()));
+    assert_eq!(check(&fine), Ok(()));
     let turns = fine.fan().right;
     for (start, side) in [(0, Side::Left), (1, Side::Right), (turns - 2_000, Side::Left)] {
         for n in start..start + 2_000 {

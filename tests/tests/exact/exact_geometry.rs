@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-use planner_core::belief::cells::{Constraint, Cut, CutError, DualCell};
-use planner_core::geometry::lattice::orient;
+use planner_core::lattice::orient;
+use planner_core::parts::{Constraint, Cut, CutError, DualCell};
 use planner_core::{Label, Sample, Site};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

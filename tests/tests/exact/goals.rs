@@ -7,7 +7,7 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::given::Lines;
 use host_sim::world::polygon::Polygon;
 use nalgebra::Point2;
-use planner_core::geometry::line::Bound;
+use planner_core::parts::Bound;
 use planner_core::{
     Accuracy, Angle, Area, Belief as _, CellPosterior, Criterion as _, Goal, Heading, Label, Line,
     PosteriorView, Prior, Sample, ShareWithin, Site, SlopeWithin,

@@ -5,12 +5,11 @@ use std::f64::consts::TAU;
 
 use host_sim::world::World;
 use nalgebra::Point2;
-use planner_core::belief::doubtful_labels::Hypothesis;
-use planner_core::belief::estimate;
 use planner_core::error::{GivenError, ObservationError};
+use planner_core::parts::Hypothesis;
 use planner_core::{
     AnyReliability, Belief as _, CellPosterior, Label, Line, Noise, PosteriorView, Prior,
-    Reliability, Sample, Site, Tolerance, Trust, UnknownReliability,
+    Reliability, Sample, Site, Tolerance, Trust, UnknownReliability, estimate,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -7,7 +7,7 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::given::Lines;
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::predictions::{Prediction as _, Predictor as _};
+use planner_core::parts::{Prediction as _, Predictor as _};
 use planner_core::{
     AnyReliability, Belief as _, Certainty, FromLog as _, Label, Line, Noise, NoisyBelief,
     PosteriorView, PredictiveBelief as _, Prior, Reliability, Sample, Site,

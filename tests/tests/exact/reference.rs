@@ -17,10 +17,8 @@ use host_sim::reference::objective::LineCost;
 use host_sim::reference::optimum::solve;
 use host_sim::reference::solution::Solution;
 use host_sim::world::noise::{Extent, NoiseModel};
-use planner_core::CarShape;
-use planner_core::dynamics::{Action, Dynamics as _};
-use planner_core::motion::dynamics::room_for_errors;
-use planner_core::{AnyVehicle, Boat, Car, Pose, Unicycle, Workspace as _};
+use planner_core::dynamics::{Action, Dynamics as _, room_for_errors};
+use planner_core::{AnyVehicle, Boat, Car, CarShape, Pose, Unicycle, Workspace as _};
 use tests::{cases, is_long};
 
 /// A sample: where, and on which side.

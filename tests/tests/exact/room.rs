@@ -1,10 +1,10 @@
 //! A version space that makes room, beside a twin that keeps every sample.
 
-use planner_core::belief::cells::{CellView, Certainty, Constraint, bound};
-use planner_core::belief::estimate::{area, bisector, centre, maximum_margin};
-use planner_core::geometry::lattice::Vector;
+use planner_core::estimate::{area, bisector, centre, maximum_margin};
+use planner_core::parts::{Bound, Constraint};
 use planner_core::{
-    Belief as _, FromLog as _, Label, LocalLine, Reading, Sample, Site, VersionSpace,
+    Belief as _, CellView, Certainty, FromLog as _, Label, LocalLine, Reading, Sample, Site,
+    Vector, VersionSpace,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -25,9 +25,13 @@ impl Twin {
         Self { all: space.samples().to_vec(), support: space.support().collect() }
     }
 
-    fn corners(&self) -> Vec<planner_core::geometry::line::Bound> {
+    fn corners(&self) -> Vec<Bound> {
         let next = self.support.iter().cycle().skip(1);
-        self.support.iter().zip(next).map(|(p, q)| bound(*p, *q)).collect()
+        let bound = |(p, q): (&Sample, &Sample)| {
+            let along = if p.label == q.label { q.site - p.site } else { p.site - q.site };
+            Bound { through: p.site, along }
+        };
+        self.support.iter().zip(next).map(bound).collect()
     }
 
     fn certainty(&self, site: Site) -> Certainty {
@@ -163,9 +167,7 @@ struct Tally {
 
 /// The distance within which all lines give a place the same label, lattice units.
 fn depth(twin: &Twin, site: Site) -> f64 {
-    let distance = |it: &planner_core::geometry::line::Bound| {
-        (it.at(site) as f64).abs() / (it.along.dot(it.along) as f64).sqrt()
-    };
+    let distance = |it: &Bound| (it.at(site) as f64).abs() / (it.along.dot(it.along) as f64).sqrt();
     twin.corners().iter().map(distance).fold(f64::INFINITY, f64::min)
 }
 

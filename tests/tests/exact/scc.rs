@@ -14,7 +14,7 @@ use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
 use host_sim::world::robot::Ideal;
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Control};
-use planner_core::geometry::lattice::LIMIT;
+use planner_core::lattice::LIMIT;
 use planner_core::link::message::MissionArea;
 use planner_core::robot::Body as _;
 use planner_core::{

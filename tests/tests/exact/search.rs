@@ -6,17 +6,12 @@ use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::given::CAPACITY;
-use planner_core::CarShape;
 use planner_core::dynamics::Dynamics;
-use planner_core::geometry::arc::SlopeArc;
-use planner_core::geometry::lattice::Vector;
-use planner_core::search::direction_rule::ArcRule;
-use planner_core::search::objective::{EffortWeight, LOOKS};
-use planner_core::search::problem::{Problem, Solution};
-use planner_core::search::recovery::Recovery;
+use planner_core::parts::{ArcRule, LOOKS, Problem, Solution};
 use planner_core::{
-    Area, Boat, Car, Certainty, Cfc, Heading, Holonomic, Label, Plan, Planner as _, Pose, Sample,
-    Site, Unicycle, VersionSpace, Workspace,
+    Area, Boat, Car, CarShape, Certainty, Cfc, EffortWeight, Heading, Holonomic, Label, Plan,
+    Planner as _, Pose, Recovery, Sample, Site, SlopeArc, Unicycle, Vector, VersionSpace,
+    Workspace,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -94,7 +89,7 @@ fn anywhere(rng: &mut ChaCha8Rng) -> Option<(VersionSpace<CAPACITY>, Area, Pose)
     let samples: Vec<_> = (0..rng.random_range(4..12))
         .map(|_| within(rng, extent))
         .map(|site| {
-            let above = planner_core::geometry::lattice::orient(a, b, site) > 0;
+            let above = planner_core::lattice::orient(a, b, site) > 0;
             Sample { site, label: if above { Label::Positive } else { Label::Negative } }
         })
         .collect();

@@ -68,7 +68,7 @@ proptest! {
             prop_assert!(lines.iter().find(same).is_some(), "{bound:?} is no line of the twin");
         }
         for line in &lines {
-            let same = |bound: planner_core::geometry::line::Bound| {
+            let same = |bound: planner_core::parts::Bound| {
                 let (d, along) = (line.direction(), wide(bound.along));
                 cross(d, along) == 0 && d[0] * along[0] + d[1] * along[1] > 0 && line.at(bound.through) == 0
             };
@@ -132,7 +132,7 @@ proptest! {
             Err(GivenError::Collinear) => {
                 prop_assert!(!mixed(&samples));
                 let collinear = |s: &Sample| samples.iter().all(|t| {
-                    planner_core::geometry::lattice::orient(samples[0].site, s.site, t.site) == 0
+                    planner_core::lattice::orient(samples[0].site, s.site, t.site) == 0
                 });
                 prop_assert!(samples.iter().all(collinear));
             }
@@ -214,7 +214,7 @@ proptest! {
 /// a segment or a triangle of the other, or two segments of different labels cross.
 fn mixed(samples: &[Sample]) -> bool {
     let of = |label| samples.iter().filter(move |s| s.label == label).map(|s| s.site);
-    let turn = |a, b, q| planner_core::geometry::lattice::orient(a, b, q).signum();
+    let turn = |a, b, q| planner_core::lattice::orient(a, b, q).signum();
     let on = |a: Site, b: Site, q: Site| turn(a, b, q) == 0 && (a - q).dot(b - q) <= 0;
     [Label::Negative, Label::Positive].into_iter().any(|label| {
         of(label).any(|q| {

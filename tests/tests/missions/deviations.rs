@@ -10,9 +10,9 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::given::CAPACITY;
 use nalgebra::{Point2, Vector2};
 use planner_core::error::ObservationError;
-use planner_core::planner::Stage;
 use planner_core::{
-    Belief as _, Deviation, Goal, Label, Line, Plan, Planner, StopReason, Unicycle, VersionSpace,
+    Belief as _, Deviation, Goal, Label, Line, Plan, Planner, Stage, StopReason, Unicycle,
+    VersionSpace,
 };
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;

@@ -9,7 +9,7 @@ use host_sim::mission::definition::Mission;
 use host_sim::mission::scenario::{self, Overrides};
 use nalgebra::Point2;
 use planner_core::Site;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::anything::flight::{Finding, fly};

@@ -166,7 +166,7 @@ fn true_labels_teach_what_they_should() {
         // A search that closes in more slowly finds as good places, but asks more of them.
         expect("places asked a plan", summary.mean_examined, ..=120.0);
         // Where no label is in reach the ladder looks for a way on.
-        assert!(summary.most_examined <= planner_core::search::objective::LOOKS);
+        assert!(summary.most_examined <= planner_core::parts::LOOKS);
     }
 }
 

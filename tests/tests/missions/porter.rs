@@ -8,11 +8,11 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::world::World;
 use nalgebra::{Point2, Vector2};
-use planner_core::geometry::lattice::Vector;
 use planner_core::robot::{AgentError, Body, DriveFn, SensorFn, VehicleError};
 use planner_core::{
     Agent, Belief as _, Event, Goal, KeepOut, Line, Lookahead, Motion, Noise, NoisyBelief, Planner,
-    PolygonArea, Pose, Reading, Site, StopReason, Unicycle, Vehicle, Workspace as _, sequences_of,
+    PolygonArea, Pose, Reading, Site, StopReason, Unicycle, Vector, Vehicle, Workspace as _,
+    sequences_of,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

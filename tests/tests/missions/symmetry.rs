@@ -6,7 +6,7 @@ use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Lines;
 use host_sim::mission::names::FanName;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::{Area, Heading, Label, Plan, Pose, Sample, Site, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

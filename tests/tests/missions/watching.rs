@@ -8,7 +8,7 @@ use host_sim::campaign::fronts::flight::{sea, vehicle};
 use host_sim::campaign::fronts::following::REACH;
 use host_sim::campaign::fronts::true_front::{TrueFront, site};
 use nalgebra::{Point2, Vector2};
-use planner_core::planner::scout::LOOKED_AT;
+use planner_core::parts::LOOKED_AT;
 use planner_core::{
     Front, FrontStretch, Guard, Label, Noise, Persist as _, Plan, Planner as _, Pose, Unicycle,
 };

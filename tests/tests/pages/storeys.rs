@@ -21,7 +21,7 @@ const PLANNER_CORE: Storeys = &[
     &["search"],
     &["planner"],
     &["robot"],
-    &["dynamics", "error", "link", "parts", "watch"],
+    &["dynamics", "error", "lattice", "link", "parts", "watch"],
 ];
 
 const HOST_SIM: Storeys = &[

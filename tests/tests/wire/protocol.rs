@@ -13,9 +13,7 @@ use host_sim::mission::algorithm::Algorithm as Planner;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
-use planner_core::VehicleShape;
 use planner_core::error::{GivenError, GridError, ObservationError, RoomError, ShapeError};
-use planner_core::geometry::local_line::LocalLine;
 use planner_core::link::delivery::Link;
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
@@ -23,13 +21,11 @@ use planner_core::link::message::{
     MOST_KEEP_OUTS, MissionArea, MissionEnd, Move, Outline, PROTOCOL, Reply, Request, Settings,
     Setup, Took,
 };
-use planner_core::planner::Stage;
-use planner_core::search::objective::EffortWeight;
-use planner_core::search::recovery::Recovery;
 use planner_core::{
-    Angle, Area, Car, CarShape, Crossing, Estimates, Far, Following, Front, FrontState,
-    FrontStretch, Goal, Heading, Hull, KeepOut, Label, Motion, Noise, Policy, Pose, Prior, Reading,
-    Reliability, Sample, Site, StopReason, Tolerance, Unicycle, UnicycleShape, Waist,
+    Angle, Area, Car, CarShape, Crossing, EffortWeight, Estimates, Far, Following, Front,
+    FrontState, FrontStretch, Goal, Heading, Hull, KeepOut, Label, LocalLine, Motion, Noise,
+    Policy, Pose, Prior, Reading, Recovery, Reliability, Sample, Site, Stage, StopReason,
+    Tolerance, Unicycle, UnicycleShape, VehicleShape, Waist,
 };
 use postcard::Deserializer;
 use serde::Serialize;

@@ -1,7 +1,6 @@
 //! How missions went: what was planned, how often the recovery ladder was needed, and why they ended.
 
-use planner_core::Step;
-use planner_core::search::recovery::Recovery;
+use planner_core::{Recovery, Step};
 use serde::Serialize;
 
 use crate::mission::results::recovery_name;

@@ -10,8 +10,7 @@
 //!
 //! Everything is decided in integers, in a time that grows with the number of corners.
 
-use planner_core::geometry::lattice::Vector;
-use planner_core::{Label, Sample};
+use planner_core::{Label, Sample, Vector};
 
 use crate::fitting::hull::{Hull, Row};
 

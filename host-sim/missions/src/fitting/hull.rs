@@ -1,6 +1,6 @@
 //! Convex hulls of recorded positions, exact.
 
-use planner_core::geometry::lattice::orient;
+use planner_core::lattice::orient;
 use planner_core::{Label, Sample, Site};
 
 /// A sample and its row in the record.

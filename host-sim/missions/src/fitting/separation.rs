@@ -15,8 +15,8 @@
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::{Point2, Vector2};
-use planner_core::Sample;
-use planner_core::geometry::lattice::{UNITS_PER_METRE, Vector};
+use planner_core::lattice::UNITS_PER_METRE;
+use planner_core::{Sample, Vector};
 
 use crate::fitting::facing::{Facing, Pair};
 use crate::fitting::halving::last_good;

@@ -4,10 +4,10 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::estimate::Estimates;
-use planner_core::belief::goal::{Criterion, Goal};
 use planner_core::error::ObservationError;
-use planner_core::{Area, Belief, Label, LocalLine, Reading, Sample, Site, Tolerance};
+use planner_core::{
+    Area, Belief, Criterion, Estimates, Goal, Label, LocalLine, Reading, Sample, Site, Tolerance,
+};
 
 /// The labels read last, and where the front was crossed.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 //! explains the labels, and the tolerance that would cover them.
 
 use nalgebra::Point2;
-use planner_core::belief::evidence::Suspect;
+use planner_core::watch::Suspect;
 use planner_core::{Line, Reading, Reliability, Sample, Step, StopReason};
 
 use crate::fitting::explanation::{Cause, Explanation, Question};

@@ -2,9 +2,8 @@
 
 use anyhow::Result;
 use nalgebra::Point2;
-use planner_core::belief::front::Waist;
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{AnyVehicle, Area, Front, MapPlace};
+use planner_core::{AnyVehicle, Area, Front, MapPlace, Waist};
 use serde::{Deserialize, Serialize};
 
 use crate::mission::algorithm::Algorithm;

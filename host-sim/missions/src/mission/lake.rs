@@ -12,8 +12,7 @@ use std::{fs, mem};
 use anyhow::{Result, anyhow, bail};
 use geojson::{Feature, GeometryValue, Position};
 use nalgebra::Point2;
-use planner_core::geometry::chart::MOST_CELLS;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::{Area, Chart, Site};
 use serde_json::{Number, Value, json};
 
@@ -186,7 +185,7 @@ fn charted(polygons: &[Vec<Ring>], cells: u16) -> Result<(Chart<'static>, [f64; 
     let side = (longer * f64::from(UNITS_PER_METRE) / f64::from(cells - 1)).ceil() as u32;
     let side = side.max(1);
     let size = [max.x - min.x, max.y - min.y]
-        .map(|it| ((it / metres(side)).floor() as u16 + 1).clamp(1, MOST_CELLS));
+        .map(|it| ((it / metres(side)).floor() as u16 + 1).clamp(1, Chart::MOST_CELLS));
     let corner = Site::try_from(min)?;
     let grid = Grid { from: Point2::from(corner), side: metres(side), size };
     let inside: Vec<bool> = polygons.iter().fold(vec![false; grid.len()], |open, rings| {

@@ -15,8 +15,7 @@
 
 use nalgebra::Point2;
 use planner_core::dynamics::{Action, Dynamics, Side};
-use planner_core::search::recovery::Recovery;
-use planner_core::{Certainty, Line, Motion, Pose, Site, StopReason, Workspace as _};
+use planner_core::{Certainty, Line, Motion, Pose, Recovery, Site, StopReason, Workspace as _};
 
 use crate::mission::baseline::{Ground, Strategy, motion};
 use crate::mission::definition::Table;

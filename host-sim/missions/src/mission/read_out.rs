@@ -2,10 +2,9 @@
 
 use std::fmt::Debug;
 
-use planner_core::belief::front::Waist;
 use planner_core::{
     AnyReliability, Area, Belief, Curve, Goal, Label, MapPlace, Planner, PosteriorView,
-    Reliability, Sample, Site, Tolerance,
+    Reliability, Sample, Site, Tolerance, Waist,
 };
 
 use crate::mission::definition::{SoughtLine, Table};

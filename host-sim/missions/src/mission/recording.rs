@@ -4,9 +4,9 @@
 
 use anyhow::{Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::doubtful_labels::Hypothesis;
-use planner_core::belief::evidence::{Alarm, Evidence};
 use planner_core::error::ObservationError;
+use planner_core::parts::Hypothesis;
+use planner_core::watch::{Alarm, Evidence};
 use planner_core::{
     AnyReliability, Estimates, Line, Pose, PosteriorView, Prior, Reading, Reliability,
     ReliabilityEstimate, Sample, Site, Stage, Step, StopReason,

@@ -8,15 +8,13 @@
 use std::borrow::Cow;
 
 use nalgebra::Point2;
-use planner_core::belief::evidence::Suspect;
 use planner_core::dynamics::Control;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
-use planner_core::planner::Stage;
-use planner_core::search::recovery::Recovery;
+use planner_core::watch::Suspect;
 use planner_core::{
-    AnyReliability, Estimates, KeepOut, Label, Line, LocalLine, Motion, Pose, Reading, Sample,
-    Site, StopReason, Workspace as _,
+    AnyReliability, Estimates, KeepOut, Label, Line, LocalLine, Motion, Pose, Reading, Recovery,
+    Sample, Site, Stage, StopReason, Workspace as _,
 };
 use serde::{Deserialize, Serialize};
 use serde_with::skip_serializing_none;

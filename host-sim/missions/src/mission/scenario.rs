@@ -5,9 +5,7 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, Error, Result, anyhow};
 use nalgebra::Point2;
-use planner_core::belief::noise::trusted_radius;
-use planner_core::link::message::MissionArea;
-use planner_core::link::message::Settings;
+use planner_core::link::message::{MissionArea, Settings};
 use planner_core::{
     AnyReliability, AnyVehicle, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability,
     Site, Tolerance, UnknownReliability, Workspace as _,
@@ -737,7 +735,7 @@ pub fn probability(field: &str, p: f64) -> Result<f64> {
 /// # Errors
 /// Names `field` and the number.
 pub fn trusted(field: &str, radius: f64) -> Result<f64> {
-    checked(field, radius, trusted_radius(radius).is_some())
+    checked(field, radius, Noise::radius(radius).is_some())
 }
 
 /// Where it starts: at the oracle's first point, unless the file says otherwise.

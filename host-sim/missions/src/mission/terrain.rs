@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Result, anyhow};
 use nalgebra::{Point2, Vector2};
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::{MOST_CORNERS, MOST_KEEP_OUTS, MissionArea};
 use planner_core::{Area, Chart, Charted, Hull, KeepOut, Line, Site, Workspace as _};
 use serde::Deserialize;

@@ -1,8 +1,7 @@
 //! An instance of a full-horizon problem: a scenario's mission, a number of motions, and which cost.
 
 use anyhow::{Result, anyhow, bail};
-use planner_core::dynamics::{Action, Control, Dynamics as _};
-use planner_core::motion::dynamics::room_for_errors;
+use planner_core::dynamics::{Action, Control, Dynamics as _, room_for_errors};
 use planner_core::{Label, Pose, Sample, Tolerance, Workspace as _};
 
 use crate::mission::algorithm::Algorithm;

@@ -6,7 +6,7 @@
 
 use std::cmp::Ordering;
 
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::{Label, Sample};
 
 /// A fraction whose denominator is positive. Both are below 2^31 in size, as they come from differences of sites.

@@ -9,7 +9,7 @@
 use anyhow::{Result, anyhow, bail};
 use geographiclib_rs::{DirectGeodesic as _, Geodesic, InverseGeodesic as _};
 use nalgebra::Point2;
-use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
+use planner_core::lattice::{LIMIT, UNITS_PER_METRE};
 use planner_core::{Line, Site};
 use serde::Serialize;
 

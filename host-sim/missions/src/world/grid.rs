@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use nalgebra::Point2;
-use planner_core::geometry::lattice::{LIMIT, UNITS_PER_METRE};
+use planner_core::lattice::{LIMIT, UNITS_PER_METRE};
 
 /// The most cells.
 const MOST_CELLS: usize = 4_000_000;

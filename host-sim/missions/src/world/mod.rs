@@ -32,8 +32,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::cells::CellView;
-use planner_core::{Label, Line, Reading, Site};
+use planner_core::{CellView, Label, Line, Reading, Site};
 
 use crate::world::boundary::{BoundaryRecord, Curve, side};
 use crate::world::moving::Moving;

@@ -1,6 +1,5 @@
 //! How labels are flipped in the simulated world.
 
-use planner_core::belief::noise::trusted_radius;
 use planner_core::{Motion, Noise, Pose, Reading, Reliability, Sample, Tolerance};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -39,7 +38,7 @@ impl NoiseModel {
         };
         Noise {
             reliability: Reliability::new(self.p).expect("a probability"),
-            trusted_radius: trusted_radius(radius).expect("a radius"),
+            trusted_radius: Noise::radius(radius).expect("a radius"),
             tolerance,
         }
     }

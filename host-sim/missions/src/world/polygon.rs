@@ -1,9 +1,9 @@
 //! Convex polygons in metres: clipping, area, and certain ground.
 
 use nalgebra::{Point2, Vector2};
-use planner_core::belief::cells::bound;
-use planner_core::geometry::lattice::UNITS_PER_METRE;
+use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::link::message::MissionArea;
+use planner_core::parts::Bound;
 use planner_core::{Area, KeepOut, Label, Line, Sample};
 use serde::Serialize;
 
@@ -113,7 +113,8 @@ impl Polygon {
     pub fn certain(area: impl Into<Self>, support: &[Sample], label: Label) -> Self {
         let next = support.iter().cycle().skip(1);
         let sides = support.iter().zip(next).filter(|(p, q)| p.label != q.label);
-        let lines: Vec<_> = sides.map(|(p, q)| Line::from(bound(*p, *q))).collect();
+        let bound = |(p, q): (&Sample, &Sample)| Bound { through: p.site, along: p.site - q.site };
+        let lines: Vec<_> = sides.map(|pair| Line::from(bound(pair))).collect();
         let beyond = |ground: Self, line: &Line| ground.clip(line, f64::from(label.sign()));
         let mut ground = lines.iter().fold(area.into(), beyond);
         let off =

@@ -81,7 +81,7 @@ impl<'a> CellView<'a> {
         let i = *self.edges.get(k)?;
         let j = *self.edges.get(k + 1).or(self.edges.first())?;
         let (p, q) = (self.samples.get(i.index())?.site, self.samples.get(j.index())?.site);
-        Some(through([p, q], i.label() == j.label()))
+        Some(Bound { through: p, along: if i.label() == j.label() { q - p } else { p - q } })
     }
 
     /// The vertices: the lines through two samples that bound the set, in cyclic order.
@@ -230,15 +230,6 @@ impl<'a> CellView<'a> {
     }
 }
 
-/// The line through two samples that are neighbours round a cell.
-pub fn bound(p: Sample, q: Sample) -> Bound {
-    through([p.site, q.site], p.label == q.label)
-}
-
-fn through([p, q]: [Site; 2], are_alike: bool) -> Bound {
-    Bound { through: p, along: if are_alike { q - p } else { p - q } }
-}
-
 /// [`CellView::certainty`], in one place and with its arguments in registers.
 #[inline(never)]
 fn certainty(edges: &[Constraint], samples: &[Sample], q: Site) -> Certainty {
@@ -248,7 +239,7 @@ fn certainty(edges: &[Constraint], samples: &[Sample], q: Site) -> Certainty {
 
 /// The range of intercepts between the vertices of a set of lines, metres; `None` when a vertical line lies
 /// among them, or there are none.
-pub fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
+pub(crate) fn intercepts(bounds: impl IntoIterator<Item = Bound>) -> Option<[f64; 2]> {
     let mut bounds = bounds.into_iter().peekable();
     let rightward = bounds.peek()?.along.x.signum();
     bounds.try_fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], bound| {

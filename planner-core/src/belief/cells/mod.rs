@@ -7,10 +7,8 @@ mod dual_cell;
 mod moments;
 mod trapezoids;
 
-#[cfg(feature = "internals")]
-pub use cell_view::bound;
-pub use cell_view::{CellView, Certainty, intercepts};
-pub(crate) use cell_view::{Kept, run_length};
+pub use cell_view::{CellView, Certainty};
+pub(crate) use cell_view::{Kept, intercepts, run_length};
 pub use constraint::Constraint;
 pub use dual_cell::{Cut, CutError, DualCell};
 pub(crate) use moments::Moments;

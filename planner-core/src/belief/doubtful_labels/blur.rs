@@ -19,7 +19,7 @@
 use heapless::Vec;
 
 use crate::belief::cells::CellView;
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;

@@ -1,6 +1,6 @@
 //! An upper bound on the mass that a full table of hypotheses dropped, in single precision and rounded up.
 
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::weight::LogWeight;
 use crate::belief::weight::Prior;
 

@@ -13,7 +13,7 @@
 use core::mem::{swap, take};
 
 use crate::belief::list::List;
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::Label;
 use crate::belief::weight::LogWeight;
 use crate::geometry::heading::SinCos;

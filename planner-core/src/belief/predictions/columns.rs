@@ -22,12 +22,12 @@
 
 use crate::belief::doubtful_labels::CellPosterior;
 use crate::belief::list::List;
-use crate::belief::noise::Reliability;
 use crate::belief::predictions::column::{
     Column, CountDensity, Density, LogStep, SumDensity, Threshold, exp,
 };
 use crate::belief::predictions::directions::{Direction, directions};
 use crate::belief::predictions::spread::{Covariance, LineSums, Stretch, Whole};
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::trust::Trust;
 use crate::geometry::approximate::precise_heading_of;
@@ -39,7 +39,7 @@ const MOST: f32 = 3.0;
 
 /// The lines of `K` directions. `136 K` bytes and 12: 2.2 kB for 16 directions.
 #[derive(Clone, Debug)]
-pub struct Columns<const K: usize> {
+pub(super) struct Columns<const K: usize> {
     view: NearSites,
     /// Those of each direction.
     lines: [Column; K],
@@ -47,7 +47,7 @@ pub struct Columns<const K: usize> {
 
 impl<const K: usize> Columns<K> {
     /// No line: memory to [`lay`](Self::lay) columns in.
-    pub const NONE: Self = {
+    pub(super) const NONE: Self = {
         assert!(K >= 1, "there is at least one direction");
         Self { view: NearSites { from: Site::ORIGIN, shift: 0 }, lines: [Column::NONE; K] }
     };
@@ -57,7 +57,7 @@ impl<const K: usize> Columns<K> {
     ///
     /// `O(H + K S)`: some 150,000 instructions for 30 labels and 16 directions. Where nobody knows the reliability, every
     /// label that is not certain counts alike.
-    pub fn lay<const N: usize, const H: usize, const E: usize, R: Trust>(
+    pub(super) fn lay<const N: usize, const H: usize, const E: usize, R: Trust>(
         &mut self,
         table: &CellPosterior<N, H, E, R>,
         believed: &[Reliability],
@@ -97,7 +97,7 @@ impl<const K: usize> Columns<K> {
     }
 
     /// The mass of the lines in each column that have a site on their +1 side. All lines together have mass 1.
-    pub fn heights(&self, site: Site) -> [f32; K] {
+    pub(super) fn heights(&self, site: Site) -> [f32; K] {
         let place = self.view.vector(site);
         self.lines.each_ref().map(|column| column.mass_above(place))
     }
@@ -105,13 +105,13 @@ impl<const K: usize> Columns<K> {
     /// The share of the lines that have a site on their +1 side, as
     /// [`PosteriorView::share_above`](crate::belief::doubtful_labels::PosteriorView::share_above). Some 850 instructions for 16
     /// directions, however many labels there are.
-    pub fn share_above(&self, site: Site) -> f32 {
+    pub(super) fn share_above(&self, site: Site) -> f32 {
         let place = self.view.vector(site);
         self.lines.iter().map(|column| column.mass_above(place)).sum()
     }
 
     /// How far the lines lie apart over a stretch.
-    pub fn spread(&self, over: &Stretch) -> ColumnSpread<'_, K> {
+    pub(super) fn spread(&self, over: &Stretch) -> ColumnSpread<'_, K> {
         let direction = precise_heading_of(over.along).unit();
         let middle = self.view.vector(over.middle);
         let turns = self.lines.each_ref().map(|column| column.turn_from(direction));
@@ -138,7 +138,7 @@ impl<const K: usize> Columns<K> {
     /// The columns after a label is read at the site whose [`heights`](Self::heights) these are. Labels there are true
     /// with probability `p`. A label that is almost impossible changes nothing, as single precision has no digits left
     /// for it.
-    pub fn after(&self, heights: [f32; K], label: Label, p: f32) -> After<'_, K> {
+    pub(super) fn after(&self, heights: [f32; K], label: Label, p: f32) -> After<'_, K> {
         let above: f32 = heights.iter().sum();
         let (plus, minus) = match label {
             Label::Positive => (p, 1.0 - p),
@@ -153,7 +153,7 @@ impl<const K: usize> Columns<K> {
 
 /// Columns as they will be after one more label.
 #[derive(Clone, Copy, Debug)]
-pub struct After<'a, const K: usize> {
+pub(super) struct After<'a, const K: usize> {
     columns: &'a Columns<K>,
     /// The [`heights`](Columns::heights) of the label's site.
     heights: [f32; K],
@@ -165,7 +165,7 @@ pub struct After<'a, const K: usize> {
 
 /// How far the lines of columns lie apart over a stretch.
 #[derive(Clone, Copy, Debug)]
-pub struct ColumnSpread<'a, const K: usize> {
+pub(super) struct ColumnSpread<'a, const K: usize> {
     columns: &'a Columns<K>,
     middle: Vector,
     /// That of each column against the stretch.
@@ -177,7 +177,7 @@ pub struct ColumnSpread<'a, const K: usize> {
 
 impl<const K: usize> ColumnSpread<'_, K> {
     /// See [`Spread::after`](crate::belief::predictions::Spread::after), of a label that is true with probability `p`.
-    pub fn after(&self, site: Site, p: f32) -> Covariance {
+    pub(super) fn after(&self, site: Site, p: f32) -> Covariance {
         let place = self.columns.view.vector(site);
         let mut sums = LineSums::default();
         for (column, &turn) in self.columns.lines.iter().zip(&self.turns) {
@@ -192,7 +192,7 @@ impl<const K: usize> ColumnSpread<'_, K> {
 impl<const K: usize> After<'_, K> {
     /// The share of the lines that will have another site on their +1 side. In each direction, the lines with both
     /// sites on their +1 side are those with the lower site there.
-    pub fn share_above(&self, site: Site) -> f32 {
+    pub(super) fn share_above(&self, site: Site) -> f32 {
         let place = self.columns.view.vector(site);
         let (mut above, mut above_both) = (0.0, 0.0);
         for (column, &first) in self.columns.lines.iter().zip(&self.heights) {

@@ -11,12 +11,12 @@
 use heapless::Vec;
 
 use crate::belief::cells::{CellView, Certainty};
-use crate::belief::noise::Reliability;
 use crate::belief::predictions::predictor::{
     Prediction, PredictiveBelief, Predictor, entropy, log2,
 };
 use crate::belief::predictions::spread::{Covariance, LineSums, Spread, Stretch, Whole};
 use crate::belief::predictions::verdicts::Decisive;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::true_labels::VersionSpace;

@@ -11,8 +11,6 @@ mod predictor;
 mod spread;
 mod verdicts;
 
-#[cfg(feature = "internals")]
-pub use columns::Columns;
 pub use dual_polygon::{DualPolygon, PolygonSpread};
 pub(crate) use noisy_belief::information;
 pub use noisy_belief::{

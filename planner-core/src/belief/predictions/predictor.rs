@@ -6,9 +6,9 @@
 //! In the last two, `share` is the [`share_above`](Prediction::share_above) of a site.
 
 use crate::belief::cells::CellView;
-use crate::belief::noise::Reliability;
 use crate::belief::predictions::spread::{Spread, Stretch};
 use crate::belief::predictions::verdicts::Verdicts;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Reading};
 use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::LogWeight;

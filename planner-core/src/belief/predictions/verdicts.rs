@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use crate::belief::evidence::Evidence;
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::Label;
 use crate::belief::weight::LogWeight;
 

@@ -73,7 +73,7 @@ impl<const N: usize> VersionSpace<N> {
     /// [`CellPosterior`](crate::belief::doubtful_labels::CellPosterior) as well.
     ///
     /// Every two samples of opposite labels exclude directions, however their positions err. The remaining directions
-    /// determine by how much samples are [shifted](crate::belief::tolerance). The remaining lines then have fewer
+    /// determine by how much samples are [shifted](crate::Tolerance). The remaining lines then have fewer
     /// directions, so the shift is computed again, three times in all. `O(n^2)` for `n` samples, in double precision,
     /// the same on every machine.
     ///

@@ -185,7 +185,7 @@ impl Setup {
         front: Front,
         ends: bool,
     ) -> Track<D, G> {
-        Track::of((area, dynamics), front, ends)
+        Track::blank((area, dynamics), (front, 0.0), ends)
     }
 
     /// The guard of a stretch of a front for this mission, with none of its samples yet: the memory for
@@ -196,7 +196,7 @@ impl Setup {
         front: Front,
         stretch: FrontStretch,
     ) -> Guard<D, G> {
-        Guard::guard_of((area, dynamics), front, stretch)
+        Guard::blank((area, dynamics), (front, stretch.length()), false)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.

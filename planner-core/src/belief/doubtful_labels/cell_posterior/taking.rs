@@ -23,7 +23,7 @@ use crate::belief::cells::{Certainty, Constraint, DualCell};
 use crate::belief::doubtful_labels::blur::{Blur, Doubt};
 use crate::belief::doubtful_labels::cell_posterior::{CellPosterior, Hypothesis};
 use crate::belief::list::List;
-use crate::belief::noise::Reliability;
+use crate::belief::reliability::Reliability;
 use crate::belief::sample::{Label, Sample};
 use crate::belief::tolerance::{Short, Tolerance};
 use crate::belief::trust::{Tallies as _, Trust};
