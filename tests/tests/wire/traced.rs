@@ -295,7 +295,7 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
         let (schema, visitor) = (self.schema, self.with(visitor));
         let value = self.of.deserialize_newtype_struct(name, visitor)?;
         // A wrapper of the reader's own.
-        if name != "Known" {
+        if name != "ReadOnce" {
             let of = schema.borrow().read.clone();
             schema.borrow_mut().define(name, Type::Alias(of));
         }
