@@ -8,7 +8,7 @@ use crate::geometry::approximate::{LEVER, METRE, cross, single, sqrt};
 use crate::geometry::arc::SlopeArc;
 use crate::geometry::area::Area;
 use crate::geometry::heading::Angle;
-use crate::geometry::lattice::Vector;
+use crate::geometry::lattice::{Site, Vector};
 use crate::geometry::line::Bound;
 use crate::geometry::span::Span;
 use crate::geometry::value::ValueError;
@@ -270,54 +270,19 @@ fn is_narrower(arc: SlopeArc, turn: Angle) -> bool {
 
 /// The share of an area on which lines of a narrow arc disagree, or somewhat more.
 ///
-/// The frame is at the middle of the area, and its first axis runs along the arc's bisector. There the ground lies
-/// between the highest of the lines and the lowest. Its breadth is a convex function, so trapezoids between some points
-/// of the function are an upper bound. They reach as far as there is such ground inside the area.
+/// Along the arc's bisector the ground lies between the highest of the lines and the lowest. Its breadth is a convex
+/// function, so trapezoids between some points of the function are an upper bound. They reach as far as there is such
+/// ground inside the area.
 fn uncertain_share<B: Bounds>(arc: SlopeArc, bounds: &B, area: Area) -> f32 {
-    let along = arc.bisector();
-    let (x, z) = (along.x as f32, along.z as f32);
-    let length = sqrt(x * x + z * z);
-    let (cos, sin) = (x / length, z / length);
-    let (middle, half) = (area.middle(), area.half_sides().map(|side| side as f32 * METRE));
-    // The slope of a line, and its height at the middle.
-    let seen = |bound: Bound| {
-        let run = single(along.dot(bound.along));
-        let slope = cross(along, bound.along) / run;
-        (slope, -single(bound.at(middle)) * (length * METRE) / run)
-    };
-    // The area's corners, with the heights of the lines there; and where lines enter the area and leave it.
-    let mut corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(|(right, up)| {
-        let (x, z) = (right * half[0], up * half[1]);
-        (x * cos + z * sin, z * cos - x * sin, Span::NONE)
-    });
-    let mut ground = Span::NONE;
-    bounds.each(|bound| {
-        let (slope, offset) = seen(bound);
-        for (x, _, heights) in &mut corners {
-            heights.add(slope * *x + offset);
-        }
-        // A point of the line is base + x way.
-        let base = [-sin * offset, cos * offset];
-        let way = [cos - sin * slope, sin + cos * slope];
-        let inside = Span::inside(base, way, half.map(|side| -side), half);
-        if !inside.is_empty() {
-            ground.add(inside.low);
-            ground.add(inside.high);
-        }
-    });
-    // Uncertain ground goes as far as the corners on which the lines disagree.
-    for (x, z, heights) in corners {
-        if heights.contains(z) {
-            ground.add(x);
-        }
-    }
+    let axes = BisectorAxes::of(arc, area);
+    let ground = axes.ground(bounds);
     if ground.is_empty() {
         return 0.0;
     }
-    let step = ground.width() / STATIONS as f32;
+    let (step, half) = (ground.width() / STATIONS as f32, axes.half);
     let mut stations = [Span::NONE; STATIONS + 1];
     bounds.each(|bound| {
-        let (slope, offset) = seen(bound);
+        let (slope, offset) = axes.seen(bound);
         for (station, heights) in stations.iter_mut().enumerate() {
             heights.add(slope * (ground.low + station as f32 * step) + offset);
         }
@@ -327,4 +292,63 @@ fn uncertain_share<B: Bounds>(arc: SlopeArc, bounds: &B, area: Area) -> f32 {
     let [first, inner @ .., last] = stations.map(|heights| heights.width() + rounding);
     let ground = (inner.iter().sum::<f32>() + 0.5 * (first + last)) * step;
     ground / (4.0 * half[0] * half[1])
+}
+
+/// Axes at the middle of an area, the first along the bisector of an arc of slopes.
+struct BisectorAxes {
+    along: Vector,
+    length: f32,
+    unit: [f32; 2],
+    middle: Site,
+    /// Half of the area's sides, metres.
+    half: [f32; 2],
+}
+
+impl BisectorAxes {
+    fn of(arc: SlopeArc, area: Area) -> Self {
+        let along = arc.bisector();
+        let (x, z) = (along.x as f32, along.z as f32);
+        let length = sqrt(x * x + z * z);
+        let half = area.half_sides().map(|side| side as f32 * METRE);
+        Self { along, length, unit: [x / length, z / length], middle: area.middle(), half }
+    }
+
+    /// The slope of a line, and its height at the middle.
+    fn seen(&self, bound: Bound) -> (f32, f32) {
+        let run = single(self.along.dot(bound.along));
+        let slope = cross(self.along, bound.along) / run;
+        (slope, -single(bound.at(self.middle)) * (self.length * METRE) / run)
+    }
+
+    /// How far uncertain ground reaches along the first axis: where lines enter the area and leave it, and as far as the
+    /// corners on which they disagree.
+    fn ground<B: Bounds>(&self, bounds: &B) -> Span {
+        let ([cos, sin], half) = (self.unit, self.half);
+        let mut corners =
+            [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]].map(|[right, up]| {
+                let (x, z) = (right * half[0], up * half[1]);
+                (x * cos + z * sin, z * cos - x * sin, Span::NONE)
+            });
+        let mut ground = Span::NONE;
+        bounds.each(|bound| {
+            let (slope, offset) = self.seen(bound);
+            for (x, _, heights) in &mut corners {
+                heights.add(slope * *x + offset);
+            }
+            // A point of the line is base + x way.
+            let base = [-sin * offset, cos * offset];
+            let way = [cos - sin * slope, sin + cos * slope];
+            let inside = Span::inside(base, way, half.map(|side| -side), half);
+            if !inside.is_empty() {
+                ground.add(inside.low);
+                ground.add(inside.high);
+            }
+        });
+        for (x, z, heights) in corners {
+            if heights.contains(z) {
+                ground.add(x);
+            }
+        }
+        ground
+    }
 }

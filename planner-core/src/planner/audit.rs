@@ -184,15 +184,9 @@ impl<V: Verdicts> Audit<V> {
             };
             for turn in first..ALONG[0].len() as u8 {
                 let site = places.place(place, turn, belief, effort);
-                let site = site.filter(|site| area.contains_disc(*site, places.near as i32));
-                let found = site.and_then(|it| {
-                    let to = (it, places.near);
-                    self.again(place, (dynamics, area), pose, to, effort)
-                        .or_else(|| errand((dynamics, area), pose, to, effort))
-                });
-                if let Some(found) = found
-                    && (turn > first || !course.strays(found.motions))
-                {
+                let to = site.map(|site| (site, places.near));
+                let way = to.and_then(|to| self.way_to(place, (dynamics, area), pose, to, effort));
+                if let Some(found) = way.filter(|it| turn > first || !course.strays(it.motions)) {
                     let (to, motions) = (Some((place, turn)), course.motions + 1);
                     self.next = AuditCourse { to, motions, left: found.motions, ..course };
                     self.arrives = found.arrives;
@@ -205,8 +199,8 @@ impl<V: Verdicts> Audit<V> {
         None
     }
 
-    /// A turn on the spot, where one label of a place does not decide and the vehicle is there.
-    fn again<D: Dynamics, G: Workspace>(
+    /// The next motion to a place's site: a turn on the spot, where one label does not decide and the vehicle is there.
+    fn way_to<D: Dynamics, G: Workspace>(
         &self,
         place: u8,
         (dynamics, area): (&D, &G),
@@ -214,13 +208,17 @@ impl<V: Verdicts> Audit<V> {
         (site, near): (Site, f32),
         effort: &mut Effort,
     ) -> Option<Errand> {
-        if !self.verdicts.is_open(place.into()) {
+        if !area.contains_disc(site, near as i32) {
             return None;
         }
-        let leg = dynamics.turn_in_place(pose, Side::Left)?;
-        let stays =
-            distance(site - pose.site) <= near && stays(dynamics, area, effort, [pose, leg.1]);
-        stays.then_some(Errand { leg, arrives: true, motions: 1 })
+        if self.verdicts.is_open(place.into())
+            && let Some(leg) = dynamics.turn_in_place(pose, Side::Left)
+            && distance(site - pose.site) <= near
+            && stays(dynamics, area, effort, [pose, leg.1])
+        {
+            return Some(Errand { leg, arrives: true, motions: 1 });
+        }
+        errand((dynamics, area), pose, (site, near), effort)
     }
 
     /// Whether the motion that was planned last ends where the audit asks for a label.

@@ -129,18 +129,10 @@ impl Far {
         let bits = belief.capacity() * predictor.most();
         let outlook = Outlook::of(belief, bounds, (price, bits), to_come, goal)?;
         let worth = |site: Site| -outlook.cost(site, pose.site);
-        let mut best = None;
-        let ends = many(predictor, belief.ground(), lookout, pose);
-        let least = ends.first().map_or(0.0, |most| WORTHWHILE * most.worth);
-        for it in ends.iter().filter(|it| it.worth >= least) {
-            let (action, target, worth) = (it.action, it.target, worth(it.target.site));
-            Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
-        }
+        let best = best_end((belief, predictor), lookout, pose, worth);
         let most = best.as_ref().map_or(f32::NEG_INFINITY, |best| best.worth);
         let mut places = FarPlaces::NONE;
-        let mut consider = |site: Site| {
-            places.add(FarPlace { site, worth: worth(site) });
-        };
+        let mut consider = |site| places.add(FarPlace { site, worth: worth(site) });
         match journey.now {
             Rest::None => sites(predictor, &chord, outlook.deviation())
                 .filter(|site| tells(belief, predictor, lookout, *site, 0.0))
@@ -160,6 +152,23 @@ impl Far {
         }
         best
     }
+}
+
+/// The best of the ends of the next motion whose labels tell about as much as any.
+fn best_end<B: PredictiveBelief, P: Prediction, D: Dynamics, G: Workspace>(
+    (belief, predictor): (&B, &P),
+    lookout: &mut Lookout<'_, D, G>,
+    pose: Pose,
+    worth: impl Fn(Site) -> f32,
+) -> Option<Decision> {
+    let ends = many(predictor, belief.ground(), lookout, pose);
+    let least = ends.first().map_or(0.0, |most| WORTHWHILE * most.worth);
+    let mut best = None;
+    for it in ends.iter().filter(|it| it.worth >= least) {
+        let (action, target, worth) = (it.action, it.target, worth(it.target.site));
+        Decision { action, target, worth, wants_label: true, is_far: false }.beat(&mut best);
+    }
+    best
 }
 
 /// Sites along the estimate, where lines deviate from it by so many lattice units. A few unlikely lines far off draw the

@@ -332,6 +332,48 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
         Plan::Move(Motion { wants_label: arrives, ..motion })
     }
 
+    /// The motion that was decided on, with so many looks left.
+    fn carry_out(&mut self, decision: &Decision, looks: u32, pose: Pose) -> Plan {
+        let Decision { action, target, wants_label, is_far, .. } = *decision;
+        let (dynamics, found) = (&self.dynamics, Found::of(None, (action, target)));
+        let effort = Effort { looks, examined: self.evaluations - looks };
+        let motion = Motion { wants_label, ..Motion::of(None, pose, &found, dynamics, effort) };
+        self.silence.bears(false);
+        if is_far {
+            return Plan::Move(motion);
+        }
+        let mut course = self.silence.course();
+        course.give_up_way();
+        self.silence.keep(pose, motion, course, dynamics)
+    }
+
+    /// The ladder's motion where no label in reach is worth it, or why the mission ends.
+    fn go_elsewhere(&mut self, (least, looks): (f32, u32), pose: Pose) -> Plan {
+        let (asked, mut course) = (self.least(), self.silence.course());
+        let (found, effort) = self.recover(pose, &mut course);
+        let found = match found {
+            Ok(found) => found,
+            Err(_) if asked > 0.0 && self.sees_less(pose, looks) => {
+                return Plan::Stop(StopReason::Worth);
+            }
+            Err(dead_end) => return Plan::Stop(dead_end.into()),
+        };
+        let mut motion = Motion::of(None, pose, &found, &self.dynamics, effort);
+        // No label in reach is worth its way: this one is on the way to others.
+        let is_dull = least > 0.0 && motion.wants_label;
+        if asked > 0.0 && is_dull {
+            motion.wants_label = self.carries(motion.target.site, asked);
+        }
+        let goes_on = self.silence.bears(is_dull);
+        let is_barred = asked > 0.0 && !motion.wants_label && self.silence.is_dull();
+        if !goes_on && !is_barred && !is_broad(self.belief.ground()) {
+            return Plan::Stop(StopReason::Tolerance);
+        }
+        let plan = self.silence.keep(pose, motion, course, &self.dynamics);
+        let ends = !goes_on || matches!(plan, Plan::Stop(_));
+        if ends && is_barred { Plan::Stop(StopReason::Worth) } else { plan }
+    }
+
     /// What the ladder finds where no label is in reach that is worth it.
     fn recover(&self, pose: Pose, course: &mut Course) -> (Result<Found, DeadEnd>, Effort) {
         let lines = self.belief.ground();
@@ -379,49 +421,14 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
             return Plan::Stop(StopReason::SamplesFull);
         }
         self.belief.prepare();
-        let mut lookout = self.lookout();
-        let (least, dynamics) = (lookout.least, &self.dynamics);
-        let mut journey = self.journey;
+        let (mut lookout, mut journey) = (self.lookout(), self.journey);
         let decision =
             self.sight.decide(&self.belief, &mut lookout, pose, (self.goal, &mut journey));
-        let looks = lookout.evaluations;
+        let (least, looks) = (lookout.least, lookout.evaluations);
         self.journey = journey;
-        if let Some(decision) = decision {
-            let Decision { action, target, wants_label, is_far, .. } = decision;
-            let effort = Effort { looks, examined: self.evaluations - looks };
-            self.silence.bears(false);
-            let found = Found::of(None, (action, target));
-            let motion = Motion { wants_label, ..Motion::of(None, pose, &found, dynamics, effort) };
-            if is_far {
-                return Plan::Move(motion);
-            }
-            let mut course = self.silence.course();
-            course.give_up_way();
-            return self.silence.keep(pose, motion, course, dynamics);
-        }
-        let asked = self.least();
-        let mut course = self.silence.course();
-        match self.recover(pose, &mut course) {
-            (Ok(found), effort) => {
-                let mut motion = Motion::of(None, pose, &found, dynamics, effort);
-                // No label in reach is worth its way: this one is on the way to others.
-                let is_dull = least > 0.0 && motion.wants_label;
-                if asked > 0.0 && is_dull {
-                    motion.wants_label = self.carries(motion.target.site, asked);
-                }
-                let goes_on = self.silence.bears(is_dull);
-                let is_barred = asked > 0.0 && !motion.wants_label && self.silence.is_dull();
-                if !goes_on && !is_barred && !is_broad(self.belief.ground()) {
-                    return Plan::Stop(StopReason::Tolerance);
-                }
-                let plan = self.silence.keep(pose, motion, course, dynamics);
-                let ends = !goes_on || matches!(plan, Plan::Stop(_));
-                if ends && is_barred { Plan::Stop(StopReason::Worth) } else { plan }
-            }
-            (Err(_), _) if asked > 0.0 && self.sees_less(pose, looks) => {
-                Plan::Stop(StopReason::Worth)
-            }
-            (Err(dead_end), _) => Plan::Stop(dead_end.into()),
+        match decision {
+            Some(decision) => self.carry_out(&decision, looks, pose),
+            None => self.go_elsewhere((least, looks), pose),
         }
     }
 

@@ -214,15 +214,8 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
     ) -> EndVerdict {
         let (n, side) = rank;
         let heading = self.dynamics.heading(pose, side, n);
-        if let Some(turn) = self.view.leaves_area_until(heading, side) {
-            return EndVerdict::Infeasible { turn, on_inner_circles_too: true };
-        }
-        if let Some((label, turn)) = self.view.certain_until(heading, side) {
-            let on_inner_circles_too = self.view.own_label() == Certainty::Certain(label);
+        if let Some((turn, on_inner_circles_too)) = self.infeasible_until(heading, side) {
             return EndVerdict::Infeasible { turn, on_inner_circles_too };
-        }
-        if let Some(turn) = self.view.outside_until(heading, side) {
-            return EndVerdict::Infeasible { turn, on_inner_circles_too: false };
         }
         let Some(looks) = self.effort.looks.checked_sub(1) else { return EndVerdict::NoneBetter };
         self.effort.looks = looks;
@@ -250,6 +243,18 @@ impl<D: Dynamics, G: Workspace> Search<'_, D, G> {
         }
         let turn = hunt.rule.forbidden_until(heading, ray.step, side);
         EndVerdict::Infeasible { turn, on_inner_circles_too: true }
+    }
+
+    /// The turn within which no ray will do as far as the view decides, and whether that holds on inner circles too.
+    #[inline]
+    fn infeasible_until(&mut self, heading: Heading, side: Side) -> Option<(u32, bool)> {
+        if let Some(turn) = self.view.leaves_area_until(heading, side) {
+            return Some((turn, true));
+        }
+        if let Some((label, turn)) = self.view.certain_until(heading, side) {
+            return Some((turn, self.view.own_label() == Certainty::Certain(label)));
+        }
+        self.view.outside_until(heading, side).map(|turn| (turn, false))
     }
 
     /// The pose at a ray's end, if a label there can tell something. The end and the way there must lie inside the

@@ -89,32 +89,18 @@ fn begin_by<G: Workspace>(
         return straight.or_else(round);
     }
     let mut waypoints: Vec<Waypoint, MOST, u8> = Vec::new();
-    for keep_out in area.keep_outs() {
-        for site in octagon(&keep_out, 2.0 * step).into_iter().flatten() {
-            if area.contains(site) {
-                let way = site - from;
-                let is_open = area.lets_pass(&[from, site]) && distance(way) > step;
-                let length = if is_open { distance(way) } else { f32::INFINITY };
-                let _ = waypoints.push(Waypoint { site, length, first: way, is_settled: false });
-            }
-        }
-    }
-    let clear = |a: Site, b: Site| area.is_clear(&[a, b], step as u32);
-    // Each is settled once at most.
-    for _ in 0..MOST {
-        let open = waypoints.iter_mut().filter(|it| !it.is_settled && it.length < f32::INFINITY);
-        let nearest = open.reduce(|a, b| if b.length < a.length { b } else { a });
-        let Some(nearest) = nearest.filter(|it| best.as_ref().is_none_or(|b| it.length < b.1))
-        else {
-            break;
-        };
-        if !effort.take(4) {
-            break;
-        }
+    add_waypoints(&mut waypoints, (area, step), from);
+    let is_shorter = |length: f32, best: &Option<(Way, f32)>| {
+        best.as_ref().is_none_or(|(_, least)| length < *least)
+    };
+    while let Some(nearest) = nearest(&mut waypoints)
+        && is_shorter(nearest.length, &best)
+        && effort.take(4)
+    {
         nearest.is_settled = true;
-        let (site, length, first) = (nearest.site, nearest.length, nearest.first);
+        let Waypoint { site, length, first, .. } = *nearest;
         if let Some((_, rest)) = way_out(site)
-            && best.as_ref().is_none_or(|(_, least)| length + rest < *least)
+            && is_shorter(length + rest, &best)
         {
             best = Some((Way::Round(first), length + rest));
         }
@@ -122,13 +108,36 @@ fn begin_by<G: Workspace>(
             let through = length + distance(other.site - site);
             if through < other.length
                 && effort.take_sweep(area, &[site, other.site])
-                && clear(site, other.site)
+                && area.is_clear(&[site, other.site], step as u32)
             {
                 (other.length, other.first) = (through, first);
             }
         }
     }
     best.map(|(way, _)| way)
+}
+
+/// Adds the waypoints in an area, each with the straight way there, as far as that is open.
+fn add_waypoints<G: Workspace>(
+    waypoints: &mut Vec<Waypoint, MOST, u8>,
+    (area, step): (&G, f32),
+    from: Site,
+) {
+    for keep_out in area.keep_outs() {
+        let corners = octagon(&keep_out, 2.0 * step).into_iter().flatten();
+        for site in corners.filter(|it| area.contains(*it)) {
+            let first = site - from;
+            let is_open = area.lets_pass(&[from, site]) && distance(first) > step;
+            let length = if is_open { distance(first) } else { f32::INFINITY };
+            let _ = waypoints.push(Waypoint { site, length, first, is_settled: false });
+        }
+    }
+}
+
+/// The nearest waypoint to which a way is known and from which none has been sought.
+fn nearest(waypoints: &mut [Waypoint]) -> Option<&mut Waypoint> {
+    let open = waypoints.iter_mut().filter(|it| !it.is_settled && it.length < f32::INFINITY);
+    open.reduce(|a, b| if b.length < a.length { b } else { a })
 }
 
 /// The corners of the octagon that holds a keep-out with so much space to spare; those beyond the lattice are left out.

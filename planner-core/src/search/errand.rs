@@ -48,6 +48,20 @@ struct Destination {
     fastest: u16,
 }
 
+impl Destination {
+    /// The speeds at which a drive may arrive so many steps away, then ever slower ones that do not overshoot. Each with
+    /// whether it arrives.
+    fn speeds(self, steps: f32) -> impl Iterator<Item = (u16, bool)> {
+        let nearest = (steps + 0.5) as u16;
+        let arriving = [nearest, nearest.saturating_sub(1), nearest.saturating_add(1)];
+        let arriving = arriving.into_iter().filter(move |_| self.near.is_some());
+        let most = (steps as u16).min(self.fastest);
+        let nearing = (0..u16::BITS).map(move |k| most >> k);
+        let all = arriving.map(|it| (it, true)).chain(nearing.map(|it| (it, false)));
+        all.filter(move |(speed, _)| (1..=self.fastest).contains(speed))
+    }
+}
+
 /// The best way so far: its first motion, and about how many motions it has.
 #[derive(Clone, Copy)]
 struct BestErrand {
@@ -181,19 +195,10 @@ fn drive<D: Dynamics, G: Workspace>(
     }
     let (dynamics, grid) = (motions.dynamics, motions.dynamics.grid());
     let way = aim.site - from.pose.site;
-    let (fastest, steps) = (aim.fastest, distance(way) / grid.step_units());
-    let nearest = (steps + 0.5) as u16;
+    let steps = distance(way) / grid.step_units();
     for ray in dynamics.around(from.pose, heading_of(way)) {
-        // The speeds that may arrive, then ever slower ones that do not overshoot.
-        let arriving = [nearest, nearest.saturating_sub(1), nearest.saturating_add(1)];
-        let arriving = arriving.into_iter().filter(|_| aim.near.is_some());
-        let most = (steps as u16).min(fastest);
-        let nearing = (0..u16::BITS).map(|k| most >> k).take_while(|speed| *speed > 0);
-        let mut speeds = arriving.map(|it| (it, true)).chain(nearing.map(|it| (it, false)));
-        let found = speeds.find_map(|(speed, arrives)| {
-            let leads_there = (1..=fastest).contains(&speed)
-                && (arrives || nears(&ray, speed, way))
-                && motions.effort.take(1);
+        let found = aim.speeds(steps).find_map(|(speed, arrives)| {
+            let leads_there = (arrives || nears(&ray, speed, way)) && motions.effort.take(1);
             let action = leads_there.then(|| grid.action(ray.index, speed))?;
             let after = dynamics.target(from.pose, action)?;
             let left = distance(aim.site - after.site);

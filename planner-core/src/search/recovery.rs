@@ -409,10 +409,12 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
         let sides = if off > 0 { [Side::Left, Side::Right] } else { [Side::Right, Side::Left] };
         let first = dynamics.turn_in_place(pose, sides[0])?;
         let sharpest = (first.1.heading.since(pose.heading).0 as i32).unsigned_abs();
-        let (mut after, mut turned, mut turns) = ([pose; 2], 0_u32, 0);
-        while (turned < Angle::HALF_TURN.0 || coarse && turns < TURNS)
-            && self.search.effort.is_enough()
-        {
+        let half_a_turn = Angle::HALF_TURN.0.div_ceil(sharpest.max(1));
+        let mut after = [pose; 2];
+        for _ in 0..if coarse { half_a_turn.max(TURNS) } else { half_a_turn } {
+            if !self.search.effort.is_enough() {
+                break;
+            }
             self.search.effort.take(1);
             for (side, after) in sides.into_iter().zip(&mut after) {
                 *after = dynamics.turn_in_place(*after, side)?.1;
@@ -422,7 +424,6 @@ impl<D: Dynamics, G: Workspace> Ladder<'_, '_, '_, D, G> {
                     _ => {}
                 }
             }
-            (turned, turns) = (turned.saturating_add(sharpest), turns + 1);
         }
         None
     }

@@ -226,37 +226,37 @@ impl<const K: usize, const M: usize> Grid<K, M> {
     /// Where the cells should lie; `None` if they lie well enough.
     fn wanted(&self) -> Option<Lay> {
         let (lay, moments) = (self.lay, self.moments());
-        let was_whole = lay.is_whole::<K>();
-        // Columns that go all around begin opposite to the mean direction.
-        let (mut columns, mut from) = (moments.columns, lay.heading_at::<K>(0.0));
-        if was_whole {
-            let mean = radians(self.heading(&moments).since(from)) / lay.turn;
-            let first = (mean + 1.5 * K as f32) as usize % K;
-            let after = moments.columns.iter().skip(first);
-            let turned = after.chain(moments.columns.iter().take(first));
-            columns.iter_mut().zip(turned).for_each(|(column, mass)| *column = *mass);
-            from = lay.heading_at::<K>(first as f32);
-        }
+        let (columns, from) = self.columns_in_order(&moments);
         let [first, last] = range(&columns);
-        let turn = (last - first) * lay.turn / K as f32;
-        let turn = if turn > LEAST[1] { turn } else { LEAST[1] };
+        let turn = at_least(LEAST[1], (last - first) * lay.turn / K as f32);
         let is_whole = turn * K as f32 > WIDE * core::f32::consts::TAU;
         let (turn, heading) = if is_whole {
             (core::f32::consts::TAU / K as f32, lay.heading)
         } else {
             (turn, from.turned(angle(0.5 * (first + last) * lay.turn)))
         };
-        let is_off = |first: f32, last: f32, cells: usize| {
-            (0.5 * (first + last) - 0.5 * cells as f32).abs() > OFF * (last - first)
-        };
-        let turns = is_whole != was_whole
-            || !is_whole && (is_other(lay.turn, turn) || is_off(first, last, K));
+        let turns = is_whole != lay.is_whole::<K>()
+            || !is_whole && (is_other(lay.turn, turn) || is_off([first, last], K));
         let [low, high] = range(&moments.rows);
-        let step = (high - low) * lay.step / M as f32;
-        let step = if step > LEAST[0] { step } else { LEAST[0] };
-        let shifts = is_other(lay.step, step) || is_off(low, high, M);
+        let step = at_least(LEAST[0], (high - low) * lay.step / M as f32);
+        let shifts = is_other(lay.step, step) || is_off([low, high], M);
         let low = lay.low + 0.5 * (low + high) * lay.step - 0.5 * step * M as f32;
         (turns || shifts).then_some(Lay { heading, turn, low, step, ..lay })
+    }
+
+    /// The masses of the columns, and the direction at which the first begins. Columns that go all around begin opposite to
+    /// the mean direction.
+    fn columns_in_order(&self, moments: &GridMoments<K, M>) -> ([f32; K], Heading) {
+        let (mut columns, from) = (moments.columns, self.lay.heading_at::<K>(0.0));
+        if !self.lay.is_whole::<K>() {
+            return (columns, from);
+        }
+        let mean = radians(self.heading(moments).since(from)) / self.lay.turn;
+        let first = (mean + 1.5 * K as f32) as usize % K;
+        let after = moments.columns.iter().skip(first);
+        let turned = after.chain(moments.columns.iter().take(first));
+        columns.iter_mut().zip(turned).for_each(|(column, mass)| *column = *mass);
+        (columns, self.lay.heading_at::<K>(first as f32))
     }
 
     /// Puts the mass into other cells: what lies beyond goes into those at the edges.
@@ -387,6 +387,15 @@ fn place_of(masses: &mut dyn Iterator<Item = &f32>, mass: f32) -> f32 {
 
 fn is_other(size: f32, wanted: f32) -> bool {
     size < SIZES[0] * wanted || size > SIZES[1] * wanted
+}
+
+/// Whether the middle of a range of cells is off the middle of all.
+fn is_off([first, last]: [f32; 2], cells: usize) -> bool {
+    (0.5 * (first + last) - 0.5 * cells as f32).abs() > OFF * (last - first)
+}
+
+fn at_least(least: f32, it: f32) -> f32 {
+    if it > least { it } else { least }
 }
 
 #[cfg(test)]

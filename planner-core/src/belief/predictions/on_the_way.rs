@@ -82,7 +82,17 @@ fn told(above: &[f32], p: f32) -> f32 {
     if p >= 1.0 {
         return of_true([least, 1.0 - most].into_iter().chain(groups.map(f32::abs)));
     }
-    let count = above.len() as u32;
+    of_doubtful([least, most], &groups, above.len() as u32, p)
+}
+
+/// The information of so many labels that are true with probability `p`, bits. The shares of lines above all places and
+/// above any are given, and by how much the share grows from each place to the next.
+fn of_doubtful(
+    [least, most]: [f32; 2],
+    groups: &(impl Iterator<Item = f32> + Clone),
+    count: u32,
+    p: f32,
+) -> f32 {
     let labels = (0..1_u32 << count).map(|labels| {
         // One bit for each place, the first the lowest; all below, all above, and crossed after each place.
         let agree = |truth: u32| count - (labels ^ truth).count_ones();

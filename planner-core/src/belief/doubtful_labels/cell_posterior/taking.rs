@@ -84,31 +84,25 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         self.admits(tolerance)?;
-        if self.is_blurred() && reliability != self.reliability_within(sample.site, tolerance) {
+        if !self.expects(reliability, sample.site, tolerance) {
             return Err(ObservationError::Reliability);
         }
-        if self.noise.reliability.unknown().is_some()
-            && reliability != Reliability::CERTAIN
-            && reliability != self.noise.reliability.nominal()
-        {
-            return Err(ObservationError::Reliability);
-        }
-        let (agree, disagree) = self.weights(reliability);
-        let weight = |label: Label| if label == sample.label { agree } else { disagree };
-        let survives = |hypothesis: &Hypothesis<E, R>| match self.certainty(hypothesis, sample.site)
-        {
-            Certainty::Certain(label) => weight(label).is_some(),
-            Certainty::Uncertain => true,
-        };
-        let doubtful = agree.is_some() && disagree.is_some();
         if self.samples.is_full() {
             return Err(ObservationError::Full(sample));
         }
-        if !doubtful && !self.table.iter().any(survives) {
-            return Err(ObservationError::Contradiction(sample));
-        }
+        let (agree, disagree) = self.weights(reliability);
+        let doubtful = agree.is_some() && disagree.is_some();
         if doubtful {
             self.make_room(sample.site);
+        } else {
+            let weight = |label: Label| if label == sample.label { agree } else { disagree };
+            let survives = |it: &Hypothesis<E, R>| match self.certainty(it, sample.site) {
+                Certainty::Certain(label) => weight(label).is_some(),
+                Certainty::Uncertain => true,
+            };
+            if !self.table.iter().any(survives) {
+                return Err(ObservationError::Contradiction(sample));
+            }
         }
         let Ok(index) = self.samples.push(sample) else {
             return Err(ObservationError::Full(sample));
@@ -120,17 +114,25 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         for k in 0..self.table.len() {
             self.update(k, Constraint::new(index, sample.label), reliability, &doubts);
         }
-        if !doubtful {
-            self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
-        }
         if doubtful {
             self.tally.count();
+        } else {
+            self.table.retain(|hypothesis| !hypothesis.cell.edges().is_empty());
         }
         if self.noise.reliability.unknown().is_none() {
             self.pruned.split(reliability);
         }
         self.rescale();
         Ok(())
+    }
+
+    /// Whether a label at a site may have this reliability. Where positions err, or nobody knows the reliability, the noise
+    /// alone says how reliable a label is, unless it is certain.
+    fn expects(&self, reliability: Reliability, site: Site, tolerance: Tolerance) -> bool {
+        let is_told = !self.is_blurred() || reliability == self.reliability_within(site, tolerance);
+        let usual = self.noise.reliability;
+        let is_free = usual.unknown().is_none() || reliability == Reliability::CERTAIN;
+        is_told && (is_free || reliability == usual.nominal())
     }
 
     /// Updates the bound on the pruned mass before a label of an unknown reliability weighs the table.
