@@ -7,7 +7,6 @@ use crate::geometry::lattice::Site;
 use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Plan, Planner, StopReason};
-use crate::robot::body::Body;
 
 /// What one step came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,26 +105,6 @@ impl<P: Planner, B> Agent<P, B> {
     /// refused counts too, of which there is no [`Step`].
     pub fn alarm(&self) -> Option<Alarm> {
         self.planner.alarm()
-    }
-}
-
-impl<P: Planner, B: Body> Agent<P, B> {
-    /// Plans one motion, makes it, and takes in what was sensed on its way and at its end.
-    ///
-    /// # Errors
-    /// [`AgentError`]. The pose is that of the last motion whose end is known. A reading on the way that the planner refuses
-    /// is reported when the motion has ended, and what was sensed after it is not taken in.
-    pub fn step(&mut self) -> Result<Event, AgentError<B::Error>> {
-        let motion = match self.next_motion() {
-            Ok(motion) => motion,
-            Err(reason) => return Ok(Event::Stopped(reason)),
-        };
-        let before = self.planner.alarm();
-        let (mut hear, body, pose) = self.parts();
-        let mut tell = |site, reading| hear.hear(site, reading);
-        let reading = body.perform_reading(&motion, pose, &mut tell).map_err(AgentError::Body)?;
-        hear.refused.map_or(Ok(()), Err).map_err(AgentError::Observation)?;
-        self.take_in(motion, reading, before)
     }
 }
 

@@ -41,28 +41,17 @@ use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
 use crate::planner::{Motion, Planner};
 use crate::robot::agent::{Agent, AgentError, Event};
-use crate::robot::body::{Vehicle, VehicleError};
+use crate::robot::drivers::{Vehicle, VehicleError, drivers};
 use crate::robot::hal::{self, PinSensor};
 use crate::robot::threshold::ThresholdSensor;
 
-/// Senses on which side of the boundary the vehicle stands.
-pub trait LabelSensor {
-    /// What can go wrong.
-    type Error: Debug;
-
-    /// The reading at the present position.
+drivers! {
+    [async] [.await] [impl AsyncFnMut(Site)]
+    /// As [`step`](Agent::step), with a body that is awaited.
     ///
     /// # Errors
-    /// The sensor's own.
-    async fn read(&mut self) -> Result<Reading, Self::Error>;
-}
-
-impl<T: LabelSensor + ?Sized> LabelSensor for &mut T {
-    type Error = T::Error;
-
-    async fn read(&mut self) -> Result<Reading, Self::Error> {
-        T::read(self).await
-    }
+    /// As there.
+    step_async
 }
 
 /// The level of a pin is there at once, so nothing is awaited.
@@ -81,156 +70,6 @@ impl<F: AsyncFnMut() -> Result<i32, E>, E: Debug> LabelSensor for ThresholdSenso
     async fn read(&mut self) -> Result<Reading, E> {
         let value = (self.measure)().await?;
         Ok(self.judge(value).into())
-    }
-}
-
-/// Moves the vehicle.
-pub trait Drive {
-    /// What can go wrong.
-    type Error: Debug;
-
-    /// Makes a motion and returns the pose that was reached.
-    ///
-    /// # Errors
-    /// The drive's own.
-    async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
-
-    /// As [`drive`](Self::drive), for a vehicle whose labels are to be read on the way as well. It awaits `report` at each
-    /// place where a label is to be read.
-    ///
-    /// # Errors
-    /// As `drive`.
-    async fn drive_reporting(
-        &mut self,
-        motion: &Motion,
-        _report: impl AsyncFnMut(Site),
-    ) -> Result<Pose, Self::Error> {
-        self.drive(motion).await
-    }
-}
-
-impl<T: Drive + ?Sized> Drive for &mut T {
-    type Error = T::Error;
-
-    async fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
-        T::drive(self, motion).await
-    }
-
-    async fn drive_reporting(
-        &mut self,
-        motion: &Motion,
-        report: impl AsyncFnMut(Site),
-    ) -> Result<Pose, Self::Error> {
-        T::drive_reporting(self, motion, report).await
-    }
-}
-
-/// Makes motions, and senses where they end.
-pub trait Body {
-    /// What can go wrong.
-    type Error;
-
-    /// Makes a motion from `pose`, which becomes where it ended, and returns what was sensed there if
-    /// the motion wants a label.
-    ///
-    /// # Errors
-    /// The body's own; `pose` is then where it is as far as it is known.
-    async fn perform(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-    ) -> Result<Option<Reading>, Self::Error>;
-
-    /// As [`perform`](Self::perform), for a body that also reads labels on the way. It passes each to `tell` at once, with
-    /// the place where it was read.
-    ///
-    /// # Errors
-    /// As `perform`.
-    async fn perform_reading(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-        _tell: impl FnMut(Site, Reading),
-    ) -> Result<Option<Reading>, Self::Error> {
-        self.perform(motion, pose).await
-    }
-}
-
-impl<T: Body + ?Sized> Body for &mut T {
-    type Error = T::Error;
-
-    async fn perform(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-    ) -> Result<Option<Reading>, T::Error> {
-        T::perform(self, motion, pose).await
-    }
-
-    async fn perform_reading(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-        tell: impl FnMut(Site, Reading),
-    ) -> Result<Option<Reading>, T::Error> {
-        T::perform_reading(self, motion, pose, tell).await
-    }
-}
-
-impl<D: Drive, S: LabelSensor> Body for Vehicle<D, S> {
-    type Error = VehicleError<D::Error, S::Error>;
-
-    async fn perform(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-    ) -> Result<Option<Reading>, Self::Error> {
-        *pose = self.drive.drive(motion).await.map_err(VehicleError::Drive)?;
-        read_at_end(&mut self.sensor, motion).await.map_err(VehicleError::Sensor)
-    }
-
-    async fn perform_reading(
-        &mut self,
-        motion: &Motion,
-        pose: &mut Pose,
-        mut tell: impl FnMut(Site, Reading),
-    ) -> Result<Option<Reading>, Self::Error> {
-        let Self { drive, sensor } = self;
-        let mut read = Ok(());
-        let report = async |site| {
-            if read.is_ok() {
-                read = sensor.read().await.map(|reading| tell(site, reading));
-            }
-        };
-        *pose = drive.drive_reporting(motion, report).await.map_err(VehicleError::Drive)?;
-        read.map_err(VehicleError::Sensor)?;
-        read_at_end(sensor, motion).await.map_err(VehicleError::Sensor)
-    }
-}
-
-async fn read_at_end<S: LabelSensor>(
-    sensor: &mut S,
-    motion: &Motion,
-) -> Result<Option<Reading>, S::Error> {
-    if motion.wants_label { sensor.read().await.map(Some) } else { Ok(None) }
-}
-
-impl<P: Planner, B: Body> Agent<P, B> {
-    /// As [`step`](Agent::step), with a body that is awaited.
-    ///
-    /// # Errors
-    /// As there.
-    pub async fn step_async(&mut self) -> Result<Event, AgentError<B::Error>> {
-        let motion = match self.next_motion() {
-            Ok(motion) => motion,
-            Err(reason) => return Ok(Event::Stopped(reason)),
-        };
-        let before = self.planner.alarm();
-        let (mut hear, body, pose) = self.parts();
-        let tell = |site, reading| hear.hear(site, reading);
-        let reading = body.perform_reading(&motion, pose, tell).await.map_err(AgentError::Body)?;
-        hear.refused.map_or(Ok(()), Err).map_err(AgentError::Observation)?;
-        self.take_in(motion, reading, before)
     }
 }
 
@@ -346,14 +185,19 @@ mod tests {
         }
     }
 
-    /// A step that is asked three times, which is enough for one whose drivers end, and then dropped.
-    fn step(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Option<Event> {
-        let mut step = pin!(agent.step_async());
+    /// What a future comes to that is asked so many times at most, and then dropped.
+    fn asked<F: Future>(times: usize, future: F) -> Option<F::Output> {
+        let mut future = pin!(future);
         let mut context = Context::from_waker(Waker::noop());
-        (0..3).find_map(|_| match step.as_mut().poll(&mut context) {
-            Poll::Ready(event) => Some(event.unwrap()),
+        (0..times).find_map(|_| match future.as_mut().poll(&mut context) {
+            Poll::Ready(end) => Some(end),
             Poll::Pending => None,
         })
+    }
+
+    /// A step that is asked three times, which is enough for one whose drivers end.
+    fn step(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Option<Event> {
+        asked(3, agent.step_async()).map(Result::unwrap)
     }
 
     /// Called and awaited drivers make the same motions and readings. So they do if two of three steps were dropped
@@ -445,7 +289,7 @@ mod tests {
         async fn drive_reporting(
             &mut self,
             motion: &Motion,
-            mut report: impl AsyncFnMut(Site),
+            report: &mut impl AsyncFnMut(Site),
         ) -> Result<Pose, Infallible> {
             for site in self.places(motion) {
                 self.go(site);
@@ -468,7 +312,7 @@ mod tests {
         let mut without = Agent::new(planner, silent, start());
         for _ in 0..8 {
             let event = called.step().unwrap();
-            assert_eq!(ended(&mut awaited), event);
+            assert_eq!(asked(20, awaited.step_async()), Some(Ok(event)));
             without.step().unwrap();
         }
         let samples = |it: &Lookahead<Unicycle, VersionSpace<32>>| it.belief().samples().to_vec();
@@ -501,34 +345,7 @@ mod tests {
         assert_eq!(called.pose(), at.get());
         assert_ne!(called.pose(), start());
         let mut awaited = Agent::new(planner(), vehicle(&free), start());
-        let mut step = pin!(awaited.step_async());
-        let mut context = Context::from_waker(Waker::noop());
-        let ended = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
-            Poll::Ready(ended) => Some(ended),
-            Poll::Pending => None,
-        });
-        assert_eq!(ended, Some(refused));
-    }
-
-    /// A step that is asked until it ends.
-    fn ended(agent: &mut Agent<impl Planner, impl Body<Error: Debug>>) -> Event {
-        let mut step = pin!(agent.step_async());
-        let mut context = Context::from_waker(Waker::noop());
-        let event = (0..20).find_map(|_| match step.as_mut().poll(&mut context) {
-            Poll::Ready(event) => Some(event.unwrap()),
-            Poll::Pending => None,
-        });
-        event.unwrap()
-    }
-
-    /// What a sensor reads when it is awaited; none if it does not end when it is asked three times.
-    fn awaited<S: LabelSensor>(sensor: &mut S) -> Option<Result<Reading, S::Error>> {
-        let mut read = pin!(sensor.read());
-        let mut context = Context::from_waker(Waker::noop());
-        (0..3).find_map(|_| match read.as_mut().poll(&mut context) {
-            Poll::Ready(reading) => Some(reading),
-            Poll::Pending => None,
-        })
+        assert_eq!(asked(20, awaited.step_async()), Some(refused));
     }
 
     #[test]
@@ -549,38 +366,10 @@ mod tests {
                 for _ in 0..=values.len() {
                     // One that is dropped before its end measures nothing, and leaves the label as it was.
                     stuck.set(Some(Driver::Sensor));
-                    assert_eq!(awaited(&mut sensor), None);
+                    assert_eq!(asked(3, sensor.read()), None);
                     stuck.set(None);
-                    assert_eq!(awaited(&mut sensor), Some(hal::LabelSensor::read(&mut called)));
+                    assert_eq!(asked(3, sensor.read()), Some(hal::LabelSensor::read(&mut called)));
                 }
-            }
-        }
-    }
-
-    #[test]
-    fn a_pin_reads_the_same_whether_it_is_called_or_awaited() {
-        struct Level(bool);
-
-        impl embedded_hal::digital::ErrorType for Level {
-            type Error = Infallible;
-        }
-
-        impl InputPin for Level {
-            fn is_high(&mut self) -> Result<bool, Infallible> {
-                Ok(self.0)
-            }
-
-            fn is_low(&mut self) -> Result<bool, Infallible> {
-                Ok(!self.0)
-            }
-        }
-
-        for level in [true, false] {
-            for high in [Label::Positive, Label::Negative] {
-                let mut sensor = PinSensor::new(Level(level), high);
-                let reading = Reading::Side(if level { high } else { -high });
-                assert_eq!(awaited(&mut sensor), Some(Ok(reading)));
-                assert_eq!(hal::LabelSensor::read(&mut sensor), Ok(reading));
             }
         }
     }

@@ -8,26 +8,18 @@ use embedded_hal::digital::InputPin;
 use crate::belief::sample::{Label, Reading};
 use crate::geometry::lattice::Site;
 use crate::motion::dynamics::Pose;
-use crate::planner::Motion;
+use crate::planner::{Motion, Planner};
+use crate::robot::agent::{Agent, AgentError, Event};
+use crate::robot::drivers::{Vehicle, VehicleError, drivers};
 
-/// Senses on which side of the boundary the vehicle stands.
-pub trait LabelSensor {
-    /// What can go wrong.
-    type Error: core::fmt::Debug;
-
-    /// The reading at the present position.
+drivers! {
+    [] [] [dyn FnMut(Site)]
+    /// Plans one motion, makes it, and takes in what was sensed on its way and at its end.
     ///
     /// # Errors
-    /// The sensor's own.
-    fn read(&mut self) -> Result<Reading, Self::Error>;
-}
-
-impl<T: LabelSensor + ?Sized> LabelSensor for &mut T {
-    type Error = T::Error;
-
-    fn read(&mut self) -> Result<Reading, Self::Error> {
-        T::read(self)
-    }
+    /// [`AgentError`]. The pose is that of the last motion whose end is known. A reading on the way that the planner refuses
+    /// is reported when the motion has ended, and what was sensed after it is not taken in.
+    step
 }
 
 /// No sensor: a place for one that stays empty.
@@ -36,53 +28,6 @@ impl LabelSensor for Infallible {
 
     fn read(&mut self) -> Result<Reading, Self> {
         match *self {}
-    }
-}
-
-/// Moves the vehicle.
-pub trait Drive {
-    /// What can go wrong.
-    type Error: core::fmt::Debug;
-
-    /// Makes a motion and returns the pose that was reached: the motion's target for an ideal
-    /// vehicle, what localisation says for a real one.
-    ///
-    /// # Errors
-    /// The drive's own.
-    fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error>;
-
-    /// As [`drive`](Self::drive), for a vehicle whose labels are to be read on the way as well. It calls `report` at each
-    /// place where a label is to be read, and the label is read before `report` returns. Places spread evenly tell the
-    /// most. The motion's end is none of them.
-    ///
-    /// A drive without this method reports none, which costs nothing.
-    ///
-    /// # Errors
-    /// As `drive`.
-    #[inline]
-    fn drive_reporting(
-        &mut self,
-        motion: &Motion,
-        _report: &mut dyn FnMut(Site),
-    ) -> Result<Pose, Self::Error> {
-        self.drive(motion)
-    }
-}
-
-impl<T: Drive + ?Sized> Drive for &mut T {
-    type Error = T::Error;
-
-    fn drive(&mut self, motion: &Motion) -> Result<Pose, Self::Error> {
-        T::drive(self, motion)
-    }
-
-    #[inline]
-    fn drive_reporting(
-        &mut self,
-        motion: &Motion,
-        report: &mut dyn FnMut(Site),
-    ) -> Result<Pose, Self::Error> {
-        T::drive_reporting(self, motion, report)
     }
 }
 

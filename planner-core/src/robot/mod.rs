@@ -6,13 +6,13 @@
 
 mod agent;
 pub mod asynchronous;
-mod body;
+mod drivers;
 mod hal;
 mod threshold;
 
 #[cfg(feature = "link")]
 pub(crate) use agent::Hearing;
 pub use agent::{Agent, AgentError, Event, Step};
-pub use body::{Body, Vehicle, VehicleError};
-pub use hal::{Drive, DriveFn, LabelSensor, PinSensor, SensorFn};
+pub use drivers::{Vehicle, VehicleError};
+pub use hal::{Body, Drive, DriveFn, LabelSensor, PinSensor, SensorFn};
 pub use threshold::ThresholdSensor;
