@@ -56,7 +56,7 @@ mod on_target {
 
     use planner_core::link::delivery::Link;
     use planner_core::link::message::ClockRate;
-    use planner_core::link::station::{FromOutlines, Known, Planners, Station};
+    use planner_core::link::station::{FromOutlines, KnownDynamics, Planners, Station};
 
     use crate::port::{Semihosting, Streams, ticks};
 
@@ -71,7 +71,7 @@ mod on_target {
     }
 
     /// Flies missions with some planners, of vehicles of one type in areas of one type.
-    pub fn fly<A: Planners, D: Known, G: FromOutlines>() -> ! {
+    pub fn fly<A: Planners, D: KnownDynamics, G: FromOutlines>() -> ! {
         let streams = open();
         let mut station = station(&streams);
         loop {
