@@ -306,12 +306,4 @@ impl<T: Planner + ?Sized> Planner for &mut T {
     fn front(&self) -> Option<FrontState> {
         T::front(self)
     }
-
-    fn estimates(&self) -> Estimates {
-        T::estimates(self)
-    }
-
-    fn estimate(&self) -> Option<Line> {
-        T::estimate(self)
-    }
 }

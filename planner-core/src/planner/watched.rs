@@ -1,12 +1,10 @@
 //! A planner whose labels are watched: the [`Evidence`] of its mission against the model.
 
-use crate::belief::estimate::Estimates;
 use crate::belief::evidence::{Alarm, Evidence};
 use crate::belief::sample::Reading;
 use crate::belief::tolerance::Tolerance;
 use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
-use crate::geometry::line::Line;
 use crate::motion::dynamics::Pose;
 use crate::planner::front_state::FrontState;
 use crate::planner::{Plan, Planner};
@@ -94,14 +92,6 @@ impl<P: Planner> Planner for Watched<P> {
     fn front(&self) -> Option<FrontState> {
         self.planner.front()
     }
-
-    fn estimates(&self) -> Estimates {
-        self.planner.estimates()
-    }
-
-    fn estimate(&self) -> Option<Line> {
-        self.planner.estimate()
-    }
 }
 
 #[cfg(test)]
@@ -142,14 +132,6 @@ mod tests {
         fn front(&self) -> Option<FrontState> {
             Some(FrontState { waist: None, is_closed: true })
         }
-
-        fn estimates(&self) -> Estimates {
-            Estimates { bisector: None, centre: None, maximum_margin: None }
-        }
-
-        fn estimate(&self) -> Option<Line> {
-            None
-        }
     }
 
     /// What a planner answers, whoever is asked in its name.
@@ -159,7 +141,6 @@ mod tests {
         assert_eq!(planner.observe(pose, None), Err(ObservationError::Reliability));
         assert_eq!(planner.observe_on_the_way(pose.site, Label::Positive.into()), Ok(true));
         assert!(planner.front().is_some_and(|it| it.is_closed));
-        assert!(planner.estimates().centre.is_none() && planner.estimate().is_none());
     }
 
     #[test]
@@ -170,7 +151,6 @@ mod tests {
             Sample::at([2.0, 5.0], Label::Positive).unwrap(),
         ];
         let outspoken = || Outspoken(VersionSpace::new(&given).unwrap());
-        assert!(outspoken().0.centre().is_some());
         answers(&mut outspoken());
         answers(Watched::new(outspoken()));
         answers(&mut Watched::new(outspoken()));

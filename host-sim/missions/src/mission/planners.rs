@@ -4,9 +4,9 @@ use planner_core::dynamics::Dynamics;
 use planner_core::error::ObservationError;
 use planner_core::watch::Alarm;
 use planner_core::{
-    Accuracy, AnyReliability, AnySight, AnyVehicle, Cfc, Estimates, FrontState, FrontStretch,
-    Guard, Line, Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance,
-    Track, Trust, Workspace,
+    Accuracy, AnyReliability, AnySight, AnyVehicle, Cfc, FrontState, FrontStretch, Guard,
+    Lookahead, Plan, Planner, Pose, PredictiveBelief, Reading, Scc, Site, Tolerance, Track, Trust,
+    Workspace,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -62,14 +62,6 @@ impl<P: Planner<Belief: ReadOut + Sized + 'static>> Planner for Erased<P> {
 
     fn front(&self) -> Option<FrontState> {
         self.0.front()
-    }
-
-    fn estimates(&self) -> Estimates {
-        self.0.estimates()
-    }
-
-    fn estimate(&self) -> Option<Line> {
-        self.0.estimate()
     }
 }
 

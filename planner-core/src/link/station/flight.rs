@@ -1,8 +1,9 @@
 //! A mission that is planned here and driven elsewhere.
 
-use crate::belief::ObservationError;
+use crate::belief::estimate::Estimates;
 use crate::belief::evidence::Alarm;
 use crate::belief::sample::Reading;
+use crate::belief::{Belief as _, ObservationError};
 use crate::geometry::lattice::Site;
 use crate::link::delivery::{Link, LinkError, Port};
 use crate::link::message::{
@@ -120,6 +121,17 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         prepared: &mut Result<Prepared<L>, DeclinedError>,
         watch: &mut impl Watch,
     ) -> Result<Flown, LinkError> {
+        self.fly_estimating(setup, prepared, watch, L::Belief::estimates)
+    }
+
+    /// The same with other estimates at the end: a program carries the code of these alone.
+    pub(super) fn fly_estimating<L: Planner>(
+        &mut self,
+        setup: &Setup,
+        prepared: &mut Result<Prepared<L>, DeclinedError>,
+        watch: &mut impl Watch,
+        estimates: impl Fn(&L::Belief) -> Estimates,
+    ) -> Result<Flown, LinkError> {
         let blind = setup.labels == LabelSource::Chip && self.sensor.is_none();
         let Prepared { planner, capacity } = match prepared {
             Ok(prepared) if !blind => prepared,
@@ -141,7 +153,8 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         };
         let reason = mission(planner, &mut vehicle, setup, self.ticks, watch)?;
         let RemoteVehicle { last, mut took, .. } = vehicle;
-        let estimates = timed(self.ticks, &mut took.estimate, || seam::estimates(planner));
+        let estimates =
+            timed(self.ticks, &mut took.estimate, || seam::estimates(planner, estimates));
         let end = MissionEnd { reason, last, took, estimates };
         self.link.ask(Request::End(end.clone()))?;
         Ok(Flown::Ended(end))

@@ -10,25 +10,20 @@
 
 use core::marker::PhantomData;
 
+use crate::belief::Belief as _;
 use crate::belief::estimate::Estimates;
-use crate::belief::evidence::Alarm;
 use crate::belief::goal::{Accuracy, Criterion};
-use crate::belief::sample::Reading;
-use crate::belief::tolerance::Tolerance;
 use crate::belief::weight::Prior;
-use crate::belief::{Belief as _, ObservationError};
-use crate::geometry::lattice::Site;
 use crate::geometry::workspace::Workspace;
 use crate::link::delivery::{LinkError, Port};
 use crate::link::message::{Algorithm, DeclinedError, Setup};
 use crate::link::station::flight::{Flown, Station, Watch};
 use crate::link::station::seam::Prepared;
 use crate::link::station::terms::{FromOutlines, KnownDynamics, PlannerSetup};
-use crate::motion::dynamics::{Dynamics, Pose};
-use crate::planner::front_state::FrontState;
+use crate::motion::dynamics::Dynamics;
+use crate::planner::Planner;
 use crate::planner::sight::{Near, Sight};
 use crate::planner::watched::Watched;
-use crate::planner::{Plan, Planner};
 use crate::robot::LabelSensor;
 
 /// The planners that a chip has.
@@ -114,11 +109,20 @@ impl<P: Port, S: LabelSensor, W: Watch> Mission<'_, P, S, W> {
         self,
         planner: &mut Result<Prepared<L>, DeclinedError>,
     ) -> Result<Flown, LinkError> {
+        self.fly_estimating(planner, L::Belief::estimates)
+    }
+
+    fn fly_estimating<L: Planner>(
+        self,
+        planner: &mut Result<Prepared<L>, DeclinedError>,
+        estimates: impl Fn(&L::Belief) -> Estimates,
+    ) -> Result<Flown, LinkError> {
+        let Self { station, setup, watch } = self;
         if !W::ALARMS {
-            return self.station.fly(self.setup, planner, self.watch);
+            return station.fly_estimating(setup, planner, watch, estimates);
         }
         let watched = planner.as_mut().map(|it| it.wrapped(Watched::new));
-        self.station.fly(self.setup, &mut watched.map_err(|declined| *declined), self.watch)
+        station.fly_estimating(setup, &mut watched.map_err(|declined| *declined), watch, estimates)
     }
 }
 
@@ -129,58 +133,11 @@ impl<const N: usize> Planners for CfcAlone<N> {
     ) -> Result<Flown, LinkError> {
         let setup = mission.setup;
         match setup.algorithm {
-            Algorithm::Cfc => {
-                let mut prepared = setup.cfc::<_, _, N>(terms);
-                let prepared = prepared.as_mut().map(|it| it.wrapped(CentreAlone));
-                mission.fly(&mut prepared.map_err(|declined| *declined))
-            }
+            Algorithm::Cfc => mission.fly_estimating(&mut setup.cfc::<_, _, N>(terms), |lines| {
+                Estimates { bisector: None, centre: lines.centre(), maximum_margin: None }
+            }),
             _ => mission.station.decline(DeclinedError::Algorithm),
         }
-    }
-}
-
-/// A planner that estimates the centre alone.
-struct CentreAlone<'a, L>(&'a mut L);
-
-impl<L: Planner> Planner for CentreAlone<'_, L> {
-    type Belief = L::Belief;
-
-    fn plan(&mut self, pose: Pose) -> Plan {
-        self.0.plan(pose)
-    }
-
-    fn observe_within(
-        &mut self,
-        pose: Pose,
-        reading: Option<Reading>,
-        tolerance: Tolerance,
-    ) -> Result<(), ObservationError> {
-        self.0.observe_within(pose, reading, tolerance)
-    }
-
-    fn observe_on_the_way(
-        &mut self,
-        site: Site,
-        reading: Reading,
-    ) -> Result<bool, ObservationError> {
-        self.0.observe_on_the_way(site, reading)
-    }
-
-    fn belief(&self) -> &L::Belief {
-        self.0.belief()
-    }
-
-    fn alarm(&self) -> Option<Alarm> {
-        self.0.alarm()
-    }
-
-    fn front(&self) -> Option<FrontState> {
-        self.0.front()
-    }
-
-    fn estimates(&self) -> Estimates {
-        let centre = self.belief().centre();
-        Estimates { bisector: None, centre, maximum_margin: None }
     }
 }
 

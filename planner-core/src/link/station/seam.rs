@@ -50,8 +50,11 @@ pub(super) fn observe_on_the_way<L: Planner>(
 }
 
 #[inline(never)]
-pub(super) fn estimates<L: Planner>(planner: &L) -> Estimates {
-    planner.estimates()
+pub(super) fn estimates<L: Planner>(
+    planner: &L,
+    estimates: impl Fn(&L::Belief) -> Estimates,
+) -> Estimates {
+    estimates(planner.belief())
 }
 
 /// Look-ahead for labels that are true.
