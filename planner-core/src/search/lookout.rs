@@ -14,8 +14,9 @@ use crate::belief::predictions::Prediction;
 use crate::geometry::lattice::UNITS_PER_METRE;
 use crate::geometry::workspace::Workspace;
 use crate::motion::action::Action;
-use crate::motion::dynamics::{Dynamics, Pose, Ray, RayFan, Side, room_for_errors};
+use crate::motion::dynamics::{Dynamics, Pose, Side, room_for_errors};
 use crate::search::objective::EffortWeight;
+use crate::search::places::{Probe, ray, rays};
 
 /// Rays of a circle that are asked first are a twelfth of a turn apart, about.
 const PROBES_PER_TURN: u32 = 12;
@@ -112,13 +113,6 @@ pub struct Lookout<'a, D, G> {
     pub(crate) evaluations: u32,
 }
 
-/// A ray, numbered from the right to the left with 0 straight ahead, and the share of lines at its end.
-#[derive(Clone, Copy)]
-struct ShareAtRay {
-    ray: i64,
-    share: f32,
-}
-
 impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
     /// What a motion costs: its squared control, weighed.
     pub(crate) fn cost(&self, reach_mm: u32, effort: u32) -> f32 {
@@ -143,11 +137,6 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         }
     }
 
-    fn ray(&self, pose: Pose, number: i64) -> Ray {
-        let side = if number < 0 { Side::Right } else { Side::Left };
-        self.dynamics.ray(pose, side, number.unsigned_abs() as u32)
-    }
-
     /// Evaluates the end of a ray. `None` if that is the last evaluation allowed, or if the end is off the lattice.
     fn ask<P: Prediction>(
         &mut self,
@@ -155,9 +144,9 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         pose: Pose,
         (number, speed): (i64, u16),
         sought: &mut LookFor<'_>,
-    ) -> Option<ShareAtRay> {
+    ) -> Option<Probe> {
         self.evaluations = self.evaluations.checked_sub(prediction.asks())?;
-        let ray = self.ray(pose, number);
+        let ray = ray(self.dynamics, pose, number);
         let target = self.dynamics.arrive(pose, &ray, speed).ok()?;
         let share = prediction.share_above(target.site);
         if share > 0.0
@@ -175,7 +164,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
                 return None;
             }
         }
-        Some(ShareAtRay { ray: number, share })
+        Some(Probe { ray: number, off: share - 0.5 })
     }
 
     /// Looks at the circle of one speed.
@@ -186,13 +175,9 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         speed: u16,
         sought: &mut LookFor<'_>,
     ) -> Option<()> {
-        let RayFan { left, right, spacing } = self.dynamics.fan();
-        let [left, right] = self.dynamics.rays_at(speed).unwrap_or([left, right]);
-        if left == 0 {
-            return Some(());
-        }
-        let (first, count) = (-i64::from(right), left.saturating_add(right).saturating_sub(1));
-        let turns = u64::from(spacing.0) * u64::from(count) * u64::from(PROBES_PER_TURN);
+        let Some((first, count)) = rays(self.dynamics, speed) else { return Some(()) };
+        let spacing = self.dynamics.fan().spacing.0;
+        let turns = u64::from(spacing) * u64::from(count) * u64::from(PROBES_PER_TURN);
         let steps = ((turns + (1 << 31)) >> 32) as u32;
         let steps = NonZeroU32::new(steps).unwrap_or(NonZeroU32::MIN);
         let stride = count / steps;
@@ -201,7 +186,7 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
             let offset = if step == steps.get() { count } else { step * stride };
             let number = first + i64::from(offset);
             let after = self.ask(prediction, pose, (number, speed), sought)?;
-            if (before.share < 0.5) != (after.share < 0.5) {
+            if (before.off < 0.0) != (after.off < 0.0) {
                 self.close_in(prediction, pose, speed, [before, after], sought)?;
             }
             before = after;
@@ -215,18 +200,18 @@ impl<D: Dynamics, G: Workspace> Lookout<'_, D, G> {
         prediction: &P,
         pose: Pose,
         speed: u16,
-        [mut a, mut b]: [ShareAtRay; 2],
+        [mut a, mut b]: [Probe; 2],
         sought: &mut LookFor<'_>,
     ) -> Option<()> {
         // How far from one half: the method of Illinois, which halves an end that stays.
-        let (mut off_a, mut off_b) = (a.share - 0.5, b.share - 0.5);
+        let (mut off_a, mut off_b) = (a.off, b.off);
         let mut stayed = None;
         while b.ray - a.ray > 1 {
             let part = (off_a / (off_a - off_b)).clamp(LEAST_STEP, 1.0 - LEAST_STEP);
             let middle = a.ray + i64::from((part * (b.ray - a.ray) as u32 as f32) as u32);
             let middle = middle.max(a.ray + 1).min(b.ray - 1);
             let probe = self.ask(prediction, pose, (middle, speed), sought)?;
-            let off = probe.share - 0.5;
+            let off = probe.off;
             if off.abs() < NEAR_HALF {
                 break;
             }

@@ -22,9 +22,22 @@ const BESIDE: u32 = 0x0888_8889;
 
 /// A ray, numbered from the right to the left with 0 straight ahead, and the share above its end, less one half.
 #[derive(Clone, Copy)]
-struct Probe {
-    ray: i64,
-    off: f32,
+pub(crate) struct Probe {
+    pub(crate) ray: i64,
+    pub(crate) off: f32,
+}
+
+/// The first ray of a speed, and how many others it has. `None` if it has none to the left.
+pub(crate) fn rays<D: Dynamics>(dynamics: &D, speed: u16) -> Option<(i64, u32)> {
+    let fan = dynamics.fan();
+    let [left, right] = dynamics.rays_at(speed).unwrap_or([fan.left, fan.right]);
+    Some((-i64::from(right), left.checked_sub(1)?.saturating_add(right)))
+}
+
+/// The ray of a number.
+pub(crate) fn ray<D: Dynamics>(dynamics: &D, pose: Pose, number: i64) -> Ray {
+    let side = if number < 0 { Side::Right } else { Side::Left };
+    dynamics.ray(pose, side, number.unsigned_abs() as u32)
 }
 
 /// What looks at ends: the vehicle, the area, the share above a place, and what each end is handed to. It says whether the
@@ -45,17 +58,10 @@ pub(crate) struct EndSearch<'a, D, G, S, F> {
 impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32) -> bool>
     EndSearch<'_, D, G, S, F>
 {
-    /// The first ray of a speed, and how many others it has.
-    fn rays(&self, speed: u16) -> Option<(i64, u32)> {
-        let fan = self.dynamics.fan();
-        let [left, right] = self.dynamics.rays_at(speed).unwrap_or([fan.left, fan.right]);
-        Some((-i64::from(right), left.checked_sub(1)?.saturating_add(right)))
-    }
-
     /// Looks at the ends of one speed. `None` if that ends early: no more may be looked at, or one lies off the
     /// lattice.
     pub(crate) fn circle(&mut self, speed: u16) -> Option<()> {
-        let (first, count) = self.rays(speed)?;
+        let (first, count) = rays(self.dynamics, speed)?;
         let gaps = if count < GAPS { count } else { GAPS };
         let mut before = self.ask(first, speed)?;
         for gap in 1..=gaps {
@@ -74,7 +80,7 @@ impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32) -> bool>
         let mut by = i64::from(BESIDE.checked_div(self.dynamics.fan().spacing.0)?);
         for _ in 0..times {
             let (ray, speed) = self.best.filter(|_| by > 0)?;
-            let (first, count) = self.rays(speed)?;
+            let (first, count) = rays(self.dynamics, speed)?;
             self.ask((ray - by).max(first), speed)?;
             self.ask((ray + by).min(first + i64::from(count)), speed)?;
             by /= 2;
@@ -82,16 +88,11 @@ impl<D: Dynamics, G: Workspace, S: Fn(Pose) -> f32, F: FnMut(Leg, f32) -> bool>
         Some(())
     }
 
-    fn ray(&self, number: i64) -> Ray {
-        let side = if number < 0 { Side::Right } else { Side::Left };
-        self.dynamics.ray(self.pose, side, number.unsigned_abs() as u32)
-    }
-
     fn ask(&mut self, number: i64, speed: u16) -> Option<Probe> {
         if self.examined >= self.most {
             return None;
         }
-        let ray = self.ray(number);
+        let ray = ray(self.dynamics, self.pose, number);
         let target = self.dynamics.arrive(self.pose, &ray, speed).ok()?;
         let share = (self.share)(target);
         self.examined += 1;
