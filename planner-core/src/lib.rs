@@ -77,6 +77,7 @@
 //! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
 //! | to switch the chip off between motions | [`Persist`], with the feature `serde` |
 //! | planner and vehicle on two machines | `link`, with the feature `link` |
+//! | the estimates of any set of lines | [`estimate`] |
 //! | to see what went wrong | [`error`] |
 //!
 //! [`plan`](Planner::plan) returns the next motion, [`observe`](Planner::observe) takes in its result, and
@@ -90,7 +91,7 @@
 //! belong to the samples that still matter, and its vertices are lines through two of them. A cyclic list of sample
 //! indices describes it completely.
 //!
-//! Positions are on an integer lattice of 15 micrometres. One predicate decides every question about that list,
+//! Positions are on an integer [`lattice`] of 15 micrometres. One predicate decides every question about that list,
 //! exactly, in 64-bit integers. Its sign is the side of the line through `a` and `b` on which a place `q` lies:
 //!
 //! ```text

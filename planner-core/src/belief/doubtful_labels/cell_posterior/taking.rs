@@ -90,19 +90,12 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         if self.samples.is_full() {
             return Err(ObservationError::Full(sample));
         }
-        let (agree, disagree) = self.weights(reliability);
-        let doubtful = agree.is_some() && disagree.is_some();
+        let weights = self.weights(reliability);
+        let doubtful = matches!(weights, (Some(_), Some(_)));
         if doubtful {
             self.make_room(sample.site);
-        } else {
-            let weight = |label: Label| if label == sample.label { agree } else { disagree };
-            let survives = |it: &Hypothesis<E, R>| match self.certainty(it, sample.site) {
-                Certainty::Certain(label) => weight(label).is_some(),
-                Certainty::Uncertain => true,
-            };
-            if !self.table.iter().any(survives) {
-                return Err(ObservationError::Contradiction(sample));
-            }
+        } else if !self.table.iter().any(|it| self.survives(it, sample, weights)) {
+            return Err(ObservationError::Contradiction(sample));
         }
         let Ok(index) = self.samples.push(sample) else {
             return Err(ObservationError::Full(sample));
@@ -124,6 +117,20 @@ impl<const N: usize, const H: usize, const E: usize, R: Trust> CellPosterior<N, 
         }
         self.rescale();
         Ok(())
+    }
+
+    /// Whether lines of a hypothesis are left after a sample with these weights on its side and on the other.
+    fn survives(
+        &self,
+        hypothesis: &Hypothesis<E, R>,
+        sample: Sample,
+        (agree, disagree): (Option<LogWeight>, Option<LogWeight>),
+    ) -> bool {
+        match self.certainty(hypothesis, sample.site) {
+            Certainty::Certain(label) if label == sample.label => agree.is_some(),
+            Certainty::Certain(_) => disagree.is_some(),
+            Certainty::Uncertain => true,
+        }
     }
 
     /// Whether a label at a site may have this reliability. Where positions err, or nobody knows the reliability, the noise
