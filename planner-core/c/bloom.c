@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 /* Your memory: nothing is allocated. */
-static uint64_t memory[1250];
+static uint64_t memory[PLANNER_FOLLOWER_BYTES / sizeof(uint64_t)];
 
 /* Your sensor. The bloom is a disc, which the planner does not know. */
 static int32_t read_label(planner_pose at, unsigned count) {
@@ -25,13 +25,13 @@ int main(void) {
         .sharpest = 1.57, .turn_step_urad = 10000,
         .step_mm = 100, .steps = 30, /* motions of up to 3 m */
     };
-    const planner_front_settings still = {.radius = 1.0, .speed = 0.0};
+    const planner_front_settings still = {.radius = 1.0, .speed = 0.0, .until_closed = true};
     planner_pose pose = {10.0, 10.0, 0.0};
-    planner_front_place front = {0};
+    planner_front_place front;
     planner_follower_t *follower = NULL;
     unsigned labels = 0, places = 0;
     planner_status status = planner_follow(&follower, memory, sizeof memory, &mission, still, NULL, 0);
-    while (status == PLANNER_STATUS_OK && !front.is_closed) {
+    for (int step = 0; step < 1000 && status == PLANNER_STATUS_OK; step++) {
         planner_motion motion;
         status = planner_follower_plan(follower, pose, &motion);
         if (status != PLANNER_STATUS_OK) break;
@@ -43,7 +43,7 @@ int main(void) {
             printf("%.2f,%.2f within %.2f m\n", front.pose.x, front.pose.z, 1.645 * front.deviation);
         }
     }
-    if (!front.is_closed) {
+    if (status != PLANNER_STATUS_CLOSED) {
         fprintf(stderr, "ended with status %d\n", (int)status);
         return 1;
     }

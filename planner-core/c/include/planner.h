@@ -1,12 +1,16 @@
-/* A planner that finds a straight boundary from few samples. Made from planner-core/c/src: change it there.
+/* A planner that finds a boundary from few yes-or-no readings. Made from planner-core/c/src: change it there.
  *
- * A mission is a struct of numbers. `planner_begin` makes a planner of it in your memory, and `planner_check` says what
- * it would refuse. Ask `planner_plan` for a motion, make it, and tell `planner_observe` where it ended and what was read.
- * An observation can bring a tolerance or a reliability of its own. `planner_estimate`, `planner_chance` and
- * `planner_bits` read out what is known. `planner_save` and `planner_restore` carry a planner over a sleep: it makes the
- * same plans as if it had stayed awake. `planner_follow` makes a planner of another kind: it goes along a front that bends
- * and moves. The one that `planner_watch` makes stays with a stretch of it. Nothing is allocated, and all capacities are
- * fixed. A call that is refused says why and changes nothing. Names and meanings stay as they are; more may be added.
+ * A mission is a struct of numbers. `planner_begin` makes a planner of a straight boundary in your memory, and
+ * `planner_check` says what it would refuse. Ask `planner_plan` for a motion, make it, and tell `planner_observe` where it
+ * ended and what was read. An observation can bring a tolerance or a reliability of its own. `planner_estimate`,
+ * `planner_chance` and `planner_bits` read out what is known. `planner_save` and `planner_restore` carry a planner over a
+ * sleep: it makes the same plans as if it had stayed awake.
+ *
+ * `planner_follow` makes a planner of another kind: it goes along a front that bends and moves, or stays with a stretch of
+ * it. What it is asked begins with `planner_follower`, and `planner_front` says where the front is.
+ *
+ * Nothing is allocated, and all capacities are fixed. A call that is refused says why and changes nothing, places for
+ * results included. Names and meanings stay as they are; more may be added.
  */
 
 
@@ -19,6 +23,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Define this for a library that is built without the feature `polygons`: its planners are smaller. */
+#ifndef PLANNER_WITHOUT_POLYGONS
+#define PLANNER_WITH_POLYGONS
+#endif
+
 /*
  Corners that an area can have, and each keep-out in it.
  */
@@ -30,104 +39,171 @@
 #define PLANNER_KEEP_OUTS 8
 
 /*
+ Memory of a planner is aligned to so many bytes.
+ */
+#define PLANNER_ALIGNMENT 8
+
+#if defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner whose labels are always right.
+ */
+#define PLANNER_BYTES 2272
+#endif
+
+#if !defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner whose labels are always right.
+ */
+#define PLANNER_BYTES 1184
+#endif
+
+#if defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner whose labels may be wrong.
+ */
+#define PLANNER_DOUBTFUL_BYTES 17176
+#endif
+
+#if !defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner whose labels may be wrong.
+ */
+#define PLANNER_DOUBTFUL_BYTES 16096
+#endif
+
+#if defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner of fronts.
+ */
+#define PLANNER_FOLLOWER_BYTES 9720
+#endif
+
+#if !defined(PLANNER_WITH_POLYGONS)
+/*
+ Bytes of a planner of fronts.
+ */
+#define PLANNER_FOLLOWER_BYTES 8640
+#endif
+
+/*
  Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
  */
 #define PLANNER_SNAPSHOT_BYTES 1100
 
 /*
- What a call came to.
+ Bytes that the snapshot of a planner of fronts can have.
+ */
+#define PLANNER_FOLLOWER_SNAPSHOT_BYTES 8800
+
+/*
+ What a call came to. The mission goes on, or it has ended, or the call is refused: `planner_has_ended` and
+ `planner_is_refused` tell.
  */
 typedef enum {
   /*
-   It was done.
+   It was done, and the mission goes on.
    */
-  PLANNER_STATUS_OK,
+  PLANNER_STATUS_OK = 0,
   /*
-   Stopped: the line is known as well as was asked for.
+   Ended: the line is known as well as was asked for.
    */
-  PLANNER_STATUS_KNOWN,
+  PLANNER_STATUS_KNOWN = 1,
   /*
-   Stopped: no motion leads to uncertain ground, as what is left of it is too thin or out of reach.
+   Ended: no motion leads to uncertain ground, as what is left of it is too thin or out of reach.
    */
-  PLANNER_STATUS_RESOLUTION,
+  PLANNER_STATUS_RESOLUTION = 2,
   /*
-   Stopped: there is no room for another sample.
+   Ended: there is no room for another sample. An observation that says so is not taken in.
    */
-  PLANNER_STATUS_FULL,
+  PLANNER_STATUS_FULL = 3,
   /*
-   Stopped: outside the area, or cornered.
+   Ended: outside the area, or cornered.
    */
-  PLANNER_STATUS_STUCK,
+  PLANNER_STATUS_STUCK = 4,
+  /*
+   Ended: there is uncertain ground, but none of the ways that a plan tries leads there. From another pose one may.
+   */
+  PLANNER_STATUS_UNDECIDED = 5,
+  /*
+   Ended: what is uncertain is so thin that no label can tell more, as positions err.
+   */
+  PLANNER_STATUS_IMPRECISE = 6,
+  /*
+   Ended: no straight, still line explains the labels, as the audit before the goal's promise read another label on
+   ground that was certain.
+   */
+  PLANNER_STATUS_NO_LINE = 7,
+  /*
+   Ended: the robot has gone along all of the front, and the front settings say that it ends then.
+   */
+  PLANNER_STATUS_CLOSED = 8,
+  /*
+   Ended: all of the area most likely has one label, so there is no front.
+   */
+  PLANNER_STATUS_ONE_LABEL = 9,
   /*
    Refused: the reading contradicts what is certain.
    */
-  PLANNER_STATUS_CONTRADICTION,
+  PLANNER_STATUS_CONTRADICTION = 64,
   /*
    Refused: a pointer is null, or the memory too small or not aligned to 8 bytes.
    */
-  PLANNER_STATUS_MEMORY,
+  PLANNER_STATUS_MEMORY = 65,
   /*
-   Refused: a number of the mission is out of its range.
+   Refused: a number of the mission or of the front settings is out of its range.
    */
-  PLANNER_STATUS_MISSION,
+  PLANNER_STATUS_MISSION = 66,
   /*
    Refused: a position is further than 8,192 m from the origin, or no number.
    */
-  PLANNER_STATUS_POSITION,
+  PLANNER_STATUS_POSITION = 67,
   /*
    Refused: there is no such reading.
    */
-  PLANNER_STATUS_READING,
+  PLANNER_STATUS_READING = 68,
   /*
    Refused: no line separates the given samples, or they are collinear, too many or of one label. Or one says
    something else than 0 or 1 for whether it is positive.
    */
-  PLANNER_STATUS_GIVEN,
-  /*
-   Stopped: there is uncertain ground, but none of the ways that a plan tries leads there. From another pose one may.
-   */
-  PLANNER_STATUS_UNDECIDED,
+  PLANNER_STATUS_GIVEN = 69,
   /*
    Refused: the tolerance leaves nothing of the area, as no place is as far from its border.
    */
-  PLANNER_STATUS_TOLERANCE_TOO_LARGE,
+  PLANNER_STATUS_TOLERANCE_TOO_LARGE = 70,
   /*
-   Stopped: what is uncertain is so thin that no label can tell more, as positions err.
+   Refused: the area is no convex polygon, has too many corners, or comes beside a rectangle. Or the library is
+   built without polygons.
    */
-  PLANNER_STATUS_IMPRECISE,
-  /*
-   Refused: the area is no convex polygon, has too many corners, or comes beside a rectangle.
-   */
-  PLANNER_STATUS_AREA,
+  PLANNER_STATUS_AREA = 71,
   /*
    Refused: a keep-out is no convex polygon, has too many corners or no possible radius, or there are too many.
    */
-  PLANNER_STATUS_KEEP_OUT,
+  PLANNER_STATUS_KEEP_OUT = 72,
   /*
    Refused: an observation's tolerance is above the mission's, or below 0, or no number.
    */
-  PLANNER_STATUS_TOLERANCE,
+  PLANNER_STATUS_TOLERANCE = 73,
   /*
    Refused: an observation's `p` is no probability, or this mission takes no other `p` than its own.
    */
-  PLANNER_STATUS_RELIABILITY,
+  PLANNER_STATUS_RELIABILITY = 74,
   /*
    Refused: the snapshot is spoilt, or never was one.
    */
-  PLANNER_STATUS_SNAPSHOT_SPOILT,
+  PLANNER_STATUS_SNAPSHOT_SPOILT = 75,
   /*
    Refused: another version of the planner made the snapshot.
    */
-  PLANNER_STATUS_SNAPSHOT_VERSION,
+  PLANNER_STATUS_SNAPSHOT_VERSION = 76,
   /*
    Refused: a planner of this mission cannot have made the snapshot.
    */
-  PLANNER_STATUS_SNAPSHOT_MISSION,
+  PLANNER_STATUS_SNAPSHOT_MISSION = 77,
   /*
-   Stopped: no straight, still line explains the labels, as the audit before the goal's promise read another label on
-   ground that was certain.
+   Refused: what is asked for is not known. The front is not found, or it is lost. Or the lines that are left lie
+   too close together for single precision.
    */
-  PLANNER_STATUS_NO_LINE,
+  PLANNER_STATUS_UNKNOWN = 78,
 } planner_status;
 
 /*
@@ -253,7 +329,8 @@ typedef struct {
    */
   double tolerance;
   /*
-   How often a label is right: 1 if always, else above 1/2.
+   How often a label is right: 1 if always, else above 1/2. A library that is built without noise finds lines with
+   1 alone.
    */
   double p;
   /*
@@ -284,12 +361,13 @@ typedef struct {
   double level;
   /*
    A polygon and keep-outs; null for the rectangle with nothing in it. It is read while a call runs, and not after.
+   A library that is built without polygons takes null alone.
    */
   const planner_area *area;
 } planner_mission;
 
 /*
- What `planner_begin` says of a mission, and which part of it that is about.
+ What is said of a mission before it begins, and which part of it that is about.
  */
 typedef struct {
   /*
@@ -301,7 +379,8 @@ typedef struct {
    */
   int32_t number;
   /*
-   What is refused: a field of the mission or of its area, `"given"` for the samples, `""` for nothing. Never null.
+   What is refused: a field of the mission, of its area or of the front settings, `"given"` for the samples, `""` for
+   nothing. Never null.
    */
   const char *what;
 } planner_verdict;
@@ -397,7 +476,7 @@ typedef struct {
 } planner_snapshot;
 
 /*
- How a front bends, and how fast it moves.
+ How a front bends, how fast it moves, and what to do with it.
  */
 typedef struct {
   /*
@@ -408,6 +487,16 @@ typedef struct {
    How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
    */
   double speed;
+  /*
+   0 to go along the front. Or so many metres of it, from 0.1 to 10000: the planner stays with them, about the place
+   where it finds the front, and learns where the front is all along them.
+   */
+  double stretch;
+  /*
+   1 to end once the robot has gone along all of the front: back to where it found it, or to the border at both ends.
+   0 to go on. With a stretch it must be 0.
+   */
+  uint8_t until_closed;
 } planner_front_settings;
 
 /*
@@ -487,7 +576,7 @@ planner_status planner_begin(planner_t **made,
                              size_t count);
 
 /*
- Plans the next motion from where the robot is. `Ok`, or why the mission is over.
+ Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.
 
  # Safety
  `finder` must be null or from `planner_begin`.
@@ -543,12 +632,12 @@ planner_status planner_observe_on_the_way(planner_t *finder,
 
 /*
  The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
- `PLANNER_STATUS_RESOLUTION` if they lie too close together for single precision.
+ `PLANNER_STATUS_UNKNOWN` if they lie too close together for single precision.
 
  # Safety
  `finder` must be null or from `planner_begin`.
  */
-planner_status planner_estimate(planner_t *finder,
+planner_status planner_estimate(const planner_t *finder,
                                 planner_line *line);
 
 /*
@@ -557,7 +646,7 @@ planner_status planner_estimate(planner_t *finder,
  # Safety
  `finder` must be null or from `planner_begin`.
  */
-double planner_bits(planner_t *finder);
+double planner_bits(const planner_t *finder);
 
 /*
  The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1.
@@ -565,7 +654,7 @@ double planner_bits(planner_t *finder);
  # Safety
  `finder` must be null or from `planner_begin`.
  */
-planner_status planner_chance(planner_t *finder, planner_point at, double *chance);
+planner_status planner_chance(const planner_t *finder, planner_point at, double *chance);
 
 /*
  Writes what a planner has to remember over a sleep. Keep it, and the robot's pose.
@@ -573,7 +662,7 @@ planner_status planner_chance(planner_t *finder, planner_point at, double *chanc
  # Safety
  `finder` must be null or from `planner_begin`.
  */
-planner_status planner_save(planner_t *finder, planner_snapshot *snapshot);
+planner_status planner_save(const planner_t *finder, planner_snapshot *snapshot);
 
 /*
  Lets a planner go on from where another was, that was begun with the same mission. Begin it first as at the start: what
@@ -592,9 +681,21 @@ planner_status planner_restore(planner_t *finder,
 size_t planner_follower_bytes(void);
 
 /*
+ What `planner_follow` will say of a mission, of front settings and of given samples, and which part of them that is
+ about. It needs no memory, and touches no planner.
+
+ # Safety
+ As for `planner_follow`.
+ */
+planner_verdict planner_follower_check(const planner_mission *mission,
+                                       planner_front_settings front,
+                                       const planner_sample *given,
+                                       size_t count);
+
+/*
  Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
  it is. It is that memory's beginning: there is nothing to free. Of the mission `slopes` and `level` must be 0. A call
- that is refused writes nothing.
+ that is refused writes nothing: a planner that is in that memory stays as it was.
 
  # Safety
  `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
@@ -609,26 +710,10 @@ planner_status planner_follow(planner_follower_t **made,
                               size_t count);
 
 /*
- As `planner_follow`, but the planner stays with so many metres of the front, from 0.1 to 10000, about the place where it
- finds it. It learns where the front is all along them.
+ Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.
 
  # Safety
- As for `planner_follow`.
- */
-planner_status planner_watch(planner_follower_t **made,
-                             void *memory,
-                             size_t bytes,
-                             const planner_mission *mission,
-                             planner_front_settings front,
-                             double stretch,
-                             const planner_sample *given,
-                             size_t count);
-
-/*
- Plans the next motion from where the robot is. `Ok`, or why there is none.
-
- # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`.
+ `follower` must be null or from `planner_follow`.
  */
 planner_status planner_follower_plan(planner_follower_t *follower,
                                      planner_pose pose,
@@ -638,53 +723,99 @@ planner_status planner_follower_plan(planner_follower_t *follower,
  Takes in where a motion ended, and what was read there: one of `planner_reading`.
 
  # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`.
+ `follower` must be null or from `planner_follow`.
  */
 planner_status planner_follower_observe(planner_follower_t *follower,
                                         planner_pose pose,
                                         int32_t reading);
 
 /*
- Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
+ As `planner_follower_observe`, of a position that may be off by so many metres, at most by the mission's tolerance. The
+ less it may be off, the more the label tells.
 
  # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`.
+ `follower` must be null or from `planner_follow`.
  */
-planner_status planner_front(planner_follower_t *follower,
+planner_status planner_follower_observe_within(planner_follower_t *follower,
+                                               planner_pose pose,
+                                               int32_t reading,
+                                               double tolerance);
+
+/*
+ Takes in what was read at a place on the way, before the motion planned last has ended. The motion goes on. Tell
+ `planner_follower_observe` of its end as without this.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_follower_observe_on_the_way(planner_follower_t *follower,
+                                                   planner_point at,
+                                                   int32_t reading);
+
+/*
+ The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1. It is 1/2 everywhere as long
+ as nothing is known of the front, and it says little of places far from the robot.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_follower_chance(const planner_follower_t *follower,
+                                       planner_point at,
+                                       double *chance);
+
+/*
+ Where the front is known best. `PLANNER_STATUS_UNKNOWN` as long as it is not found, and where it is lost.
+
+ # Safety
+ `follower` must be null or from `planner_follow`.
+ */
+planner_status planner_front(const planner_follower_t *follower,
                              planner_front_place *front);
 
 /*
  Where the front crosses the line through the pose that is square to its heading. Ask it of places all along a stretch
- that is watched. `PLANNER_STATUS_UNDECIDED` as long as the front is not found, and where it is lost.
+ that is watched. `PLANNER_STATUS_UNKNOWN` as long as the front is not found, and where it is lost.
 
  # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`.
+ `follower` must be null or from `planner_follow`.
  */
-planner_status planner_front_beside(planner_follower_t *follower,
+planner_status planner_front_beside(const planner_follower_t *follower,
                                     planner_pose pose,
                                     planner_front_crossing *beside);
 
 /*
- Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
- much room, and then none is written. `planner_follower_bytes` are always enough.
+ Writes what a planner of fronts has to remember over a sleep, and how many bytes that takes.
+ `PLANNER_FOLLOWER_SNAPSHOT_BYTES` are always enough. If there is not so much room, nothing is written: what was saved
+ there before stays.
 
  # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.
+ `follower` must be null or from `planner_follow`, `bytes` null or writable for so many bytes.
  */
-size_t planner_follower_save(planner_follower_t *follower,
-                             uint8_t *bytes,
-                             size_t room);
+planner_status planner_follower_save(const planner_follower_t *follower,
+                                     uint8_t *bytes,
+                                     size_t room,
+                                     size_t *count);
 
 /*
  Lets a planner of fronts go on from where another was, that was begun with the same mission. A planner that refuses
  the bytes stays as it was.
 
  # Safety
- `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or readable for so many bytes.
+ `follower` must be null or from `planner_follow`, `bytes` null or readable for so many bytes.
  */
 planner_status planner_follower_restore(planner_follower_t *follower,
                                         const uint8_t *bytes,
                                         size_t count);
+
+/*
+ Whether a status says that the mission has ended. It is a number, as an enumeration of C may hold any.
+ */
+bool planner_has_ended(int32_t status);
+
+/*
+ Whether a status says that a call is refused. Such a call has changed nothing, and the mission can go on.
+ */
+bool planner_is_refused(int32_t status);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -1,10 +1,11 @@
 //! Where motions may go: a convex polygon or a rectangle, but for keep-outs.
 
-use planner_core::error::PolygonAreaError;
-use planner_core::{Hull, PolygonArea, Site};
+#[cfg(feature = "polygons")]
+use planner_core::{Hull, Site, error::PolygonAreaError};
 
-use crate::types::{Point, Status};
-use crate::verdict::Refusal;
+use crate::types::Point;
+#[cfg(feature = "polygons")]
+use crate::{status::Status, verdict::Refusal};
 
 /// Corners that an area can have, and each keep-out in it.
 pub const CORNERS: usize = 8;
@@ -13,7 +14,10 @@ pub const CORNERS: usize = 8;
 pub const KEEP_OUTS: usize = 8;
 
 /// An area as planners have it.
-pub(crate) type Ground = PolygonArea<CORNERS, KEEP_OUTS>;
+#[cfg(feature = "polygons")]
+pub(crate) type Ground = planner_core::PolygonArea<CORNERS, KEEP_OUTS>;
+#[cfg(not(feature = "polygons"))]
+pub(crate) type Ground = planner_core::Area;
 
 /// What no motion touches: all places within a radius of a point, of a straight wall or of a convex polygon.
 #[repr(C)]
@@ -42,6 +46,7 @@ pub struct Area {
     pub keep_out_count: u8,
 }
 
+#[cfg(feature = "polygons")]
 impl Area {
     /// Its polygon.
     pub(crate) fn polygon(&self) -> Result<Hull<CORNERS>, Refusal> {
@@ -67,12 +72,14 @@ impl Area {
     }
 }
 
+#[cfg(feature = "polygons")]
 impl KeepOut {
     fn read(&self) -> Option<planner_core::KeepOut<CORNERS>> {
         planner_core::KeepOut::new(hull(&self.corners, self.corner_count)?, self.radius).ok()
     }
 }
 
+#[cfg(feature = "polygons")]
 fn hull(corners: &[Point; CORNERS], count: u8) -> Option<Hull<CORNERS>> {
     let corners = corners.get(..usize::from(count))?;
     let mut sites = [Site::ORIGIN; CORNERS];

@@ -1,108 +1,120 @@
-//! The planner in the caller's memory, and the functions that are called.
-//!
-//! The only unsafe code is here: it reads and writes behind the pointers that C passes. A null pointer is refused. The
-//! caller promises that all others are as the header requires.
+//! Planners that find a line, and the functions that are called of them.
 
 use core::ffi::c_void;
-use core::mem::{MaybeUninit, align_of, size_of};
+use core::mem::{MaybeUninit, size_of};
 
+use planner_core::error::{GivenError, ObservationError};
 use planner_core::{
-    Lookahead, NoisyBelief, Plan, Planner as _, Prior, Reliability, Restart as _, SlopeWithin,
-    Tolerance, Unicycle, VersionSpace,
+    Belief as _, FromLog, Goal, Lookahead, Persist as _, Planner as _, PredictiveBelief,
+    Reliability, SlopeWithin, Unicycle, VersionSpace,
 };
+#[cfg(feature = "noise")]
+use planner_core::{CellPosterior, NoisyBelief, Prior, Restart as _};
 
 use crate::area::Ground;
-use crate::asked::Asked;
-use crate::possible::{MOST_GIVEN, Possible};
-use crate::snapshot::Snapshot;
-use crate::types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
+use crate::held::{self, Handle, Held, Kind, answer, ask, held, hold, seen, told};
+use crate::mission::Mission;
+use crate::parts::{MOST_GIVEN, Parts};
+use crate::snapshot::{SNAPSHOT_BYTES, Snapshot};
+use crate::status::Status;
+use crate::types::{Line, Motion, Point, Pose, Reading, Sample};
 use crate::verdict::{Refusal, Verdict};
 
 /// Samples that a planner of true labels has room for, the given ones included.
 const TRUE_SAMPLES: usize = 68;
 /// The same with labels that may be wrong, and all hypotheses that 32 of them can come to.
+#[cfg(feature = "noise")]
 const DOUBTFUL_SAMPLES: usize = 36;
+#[cfg(feature = "noise")]
 const HYPOTHESES: usize = 529;
 
-type True = Lookahead<Unicycle, VersionSpace<TRUE_SAMPLES>, Ground, SlopeWithin>;
-type Doubtful = Lookahead<Unicycle, NoisyBelief<DOUBTFUL_SAMPLES, HYPOTHESES>, Ground, SlopeWithin>;
+type Of<B> = Lookahead<Unicycle, B, Ground, SlopeWithin>;
+pub(crate) type True = Of<VersionSpace<TRUE_SAMPLES>>;
+#[cfg(feature = "noise")]
+pub(crate) type Doubtful = Of<NoisyBelief<DOUBTFUL_SAMPLES, HYPOTHESES>>;
+/// There are none.
+#[cfg(not(feature = "noise"))]
+pub(crate) type Doubtful = True;
 
 /// A planner, in memory of the caller.
-#[repr(align(8))]
-pub struct Finder {
-    kind: Kind,
+pub struct Finder(());
+
+impl Handle for Finder {
+    type One = True;
+    type Other = Doubtful;
 }
 
-/// Which planner follows in memory.
-#[derive(Clone, Copy)]
-enum Kind {
-    True,
-    Doubtful,
+/// A belief that can take in a label whose reliability differs from the mission's.
+trait Believe: PredictiveBelief + FromLog {
+    /// How reliable the labels of the mission are.
+    fn usual(known: &Self::Belief) -> Reliability;
+
+    /// Takes in a label of another reliability.
+    fn take(
+        &mut self,
+        sample: planner_core::Sample,
+        believed: Reliability,
+    ) -> Result<(), ObservationError>;
 }
 
-/// A planner with its kind before it.
-#[repr(C)]
-struct Held<P> {
-    finder: Finder,
-    planner: P,
-}
-
-/// What a pointer leads to.
-enum Either<'a> {
-    True(&'a mut True),
-    Doubtful(&'a mut Doubtful),
-}
-
-/// What a pointer leads to; `None` if it is null.
-///
-/// # Safety
-/// It must be null or what [`begin`] wrote, and nobody else may use that meanwhile.
-unsafe fn asked<'a>(finder: *mut Finder) -> Option<Either<'a>> {
-    if finder.is_null() {
-        return None;
+/// Labels are always right.
+impl<const N: usize> Believe for VersionSpace<N> {
+    fn usual(_: &Self) -> Reliability {
+        Reliability::CERTAIN
     }
-    // SAFETY: only `begin` makes a finder, and it writes after it the planner of its kind.
-    unsafe {
-        Some(match (*finder).kind {
-            Kind::True => Either::True(&mut (*finder.cast::<Held<True>>()).planner),
-            Kind::Doubtful => Either::Doubtful(&mut (*finder.cast::<Held<Doubtful>>()).planner),
-        })
+
+    fn take(&mut self, _: planner_core::Sample, _: Reliability) -> Result<(), ObservationError> {
+        Err(ObservationError::Reliability)
     }
 }
 
-/// Asks either planner the same. No table of methods: a program carries only those that it calls.
-macro_rules! ask {
-    ($either:expr, $planner:ident => $asked:expr) => {
-        match $either {
-            Either::True($planner) => $asked,
-            Either::Doubtful($planner) => $asked,
-        }
-    };
+#[cfg(feature = "noise")]
+impl<const N: usize, const H: usize> Believe for NoisyBelief<N, H> {
+    fn usual(known: &CellPosterior<N, H>) -> Reliability {
+        known.noise().reliability
+    }
+
+    fn take(
+        &mut self,
+        sample: planner_core::Sample,
+        believed: Reliability,
+    ) -> Result<(), ObservationError> {
+        Self::take(self, sample, believed)
+    }
 }
 
 /// How much memory the planner of a mission takes, bytes; 0 if `p` or `tolerance` is refused. Nothing else is checked.
 #[unsafe(export_name = "planner_bytes")]
 pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
-    match mission.map(Mission::noise) {
-        Some(Ok(None)) => size_of::<Held<True>>(),
-        Some(Ok(Some(_))) => size_of::<Held<Doubtful>>(),
+    match mission.map(|it| (it.noise(), it.is_true())) {
+        Some((Ok(_), true)) => size_of::<Held<True>>(),
+        Some((Ok(_), false)) if cfg!(feature = "noise") => size_of::<Held<Doubtful>>(),
         _ => 0,
     }
 }
 
-/// The given samples.
-///
-/// # Safety
-/// `given` must be null or readable for so many samples.
-unsafe fn samples<'a>(given: *const Sample, count: usize) -> Result<&'a [Sample], Refusal> {
-    if given.is_null() || !given.is_aligned() {
-        return Err(Refusal::of(Status::Memory, c""));
-    }
-    if count > MOST_GIVEN {
-        return Err(Refusal::of(Status::Given, c"given"));
-    }
-    // SAFETY: the caller promises so many samples.
-    Ok(unsafe { core::slice::from_raw_parts(given, count) })
+/// What a planner is made of, and its goal.
+fn possible(
+    (mission, given): (&Mission<'_>, &[Sample]),
+) -> Result<(Parts, Option<Goal<SlopeWithin>>), Refusal> {
+    let parts = Parts::new(mission, given)?;
+    let goal = mission.goal()?;
+    // With room for these samples alone.
+    let found = if mission.is_true() {
+        let space = VersionSpace::<MOST_GIVEN>::new(parts.given());
+        space.and_then(|it| it.with_tolerance(parts.noise.tolerance)).map(drop)
+    } else {
+        #[cfg(not(feature = "noise"))]
+        return Err(Refusal::of(Status::Mission, c"p"));
+        #[cfg(feature = "noise")]
+        CellPosterior::<MOST_GIVEN, 1>::new(parts.given(), Prior::Area, parts.noise).map(drop)
+    };
+    let refusal = Refusal::of(Status::Given, c"given");
+    found.map_err(|why| match why {
+        GivenError::NotSeparable(number) => refusal.about(number),
+        _ => refusal,
+    })?;
+    Ok((parts, goal))
 }
 
 /// What `planner_begin` will say of a mission and its given samples, and which part of them that is about. It needs no
@@ -116,10 +128,9 @@ pub unsafe extern "C" fn check(
     given: *const Sample,
     count: usize,
 ) -> Verdict {
-    let Some(mission) = mission else { return Err(Refusal::of(Status::Memory, c"")).into() };
     // SAFETY: the caller promises it.
-    let given = unsafe { samples(given, count) };
-    given.and_then(|given| Possible::new(mission, given)).map(drop).into()
+    let told = unsafe { told(mission, (given, count)) };
+    told.and_then(possible).map(drop).into()
 }
 
 /// Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
@@ -138,61 +149,46 @@ pub unsafe extern "C" fn begin(
     given: *const Sample,
     count: usize,
 ) -> Status {
-    let (Some(made), Some(mission)) = (made, mission) else { return Status::Memory };
-    // SAFETY: the caller promises so many samples.
-    let given = unsafe { samples(given, count) };
-    let possible = match given.and_then(|given| Possible::new(mission, given)) {
-        Ok(possible) => possible,
-        Err(refusal) => return refusal.status,
-    };
-    // SAFETY: the caller promises so much memory.
-    match unsafe { begin_in(memory, bytes, &possible) } {
-        Ok(finder) => {
-            made.write(finder);
-            Status::Ok
-        }
-        Err(status) => status,
-    }
+    // SAFETY: the caller promises it.
+    answer(made, || unsafe { begin_in((memory, bytes), mission, (given, count)) })
 }
 
 /// # Safety
-/// `memory` must be null or writable for so many bytes.
+/// As for [`begin`].
 unsafe fn begin_in(
-    memory: *mut c_void,
-    bytes: usize,
-    possible: &Possible,
+    memory: (*mut c_void, usize),
+    mission: Option<&Mission<'_>>,
+    given: (*const Sample, usize),
 ) -> Result<*mut Finder, Status> {
-    let &Possible { area, tolerance, unicycle, goal, noise, .. } = possible;
-    let needed =
-        if noise.is_none() { size_of::<Held<True>>() } else { size_of::<Held<Doubtful>>() };
-    let is_room = !memory.is_null() && bytes >= needed && memory.addr().is_multiple_of(8);
-    if !is_room {
-        return Err(Status::Memory);
+    // SAFETY: the caller promises it.
+    let (mission, given) = unsafe { told(mission, given) }?;
+    let (parts, goal) = possible((mission, given))?;
+    let (area, unicycle, noise) = (parts.ground, parts.unicycle, parts.noise);
+    if mission.is_true() {
+        let make = || {
+            let space = VersionSpace::new(parts.given());
+            let space = space.and_then(|it| it.with_tolerance(noise.tolerance));
+            let planner = Lookahead::new(area, unicycle, space.map_err(|_| Status::Given)?);
+            Ok(planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal))
+        };
+        // SAFETY: the caller promises it.
+        let _: &mut True = unsafe { hold(memory, Kind::One, make) }?;
     }
-    const { assert!(align_of::<Held<True>>() <= 8 && align_of::<Held<Doubtful>>() <= 8) };
-    // SAFETY (of both writes): there is room, and it is aligned.
-    if let Some(noise) = noise {
-        let planner = Lookahead::new(area, unicycle, NoisyBelief::NONE);
-        let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
-        let held = Held { finder: Finder { kind: Kind::Doubtful }, planner };
-        let place = memory.cast::<Held<Doubtful>>();
-        unsafe { place.write(held) };
-        // In place: it is large. SAFETY: it has just been written.
-        let planner = unsafe { &mut (*place).planner };
-        planner.restart(possible.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
-    } else {
-        let space = VersionSpace::new(possible.given());
-        let space = space.and_then(|it| it.with_tolerance(tolerance));
-        let space = space.map_err(|_| Status::Given)?;
-        let planner = Lookahead::new(area, unicycle, space);
-        let planner = planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal);
-        let held = Held { finder: Finder { kind: Kind::True }, planner };
-        unsafe { memory.cast::<Held<True>>().write(held) };
+    #[cfg(feature = "noise")]
+    if !mission.is_true() {
+        let make = || {
+            let planner = Lookahead::new(area, unicycle, NoisyBelief::NONE);
+            Ok(planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal))
+        };
+        // SAFETY: the caller promises it.
+        let planner: &mut Doubtful = unsafe { hold(memory, Kind::Other, make) }?;
+        // In place: it is large.
+        planner.restart(parts.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
     }
-    Ok(memory.cast())
+    Ok(memory.0.cast())
 }
 
-/// Plans the next motion from where the robot is. `Ok`, or why the mission is over.
+/// Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.
 ///
 /// # Safety
 /// `finder` must be null or from `planner_begin`.
@@ -203,20 +199,7 @@ pub unsafe extern "C" fn plan(
     motion: Option<&mut MaybeUninit<Motion>>,
 ) -> Status {
     // SAFETY: the caller promises it.
-    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, motion) else {
-        return Status::Memory;
-    };
-    let pose = match pose.read() {
-        Ok(pose) => pose,
-        Err(status) => return status,
-    };
-    match ask!(finder, it => it.plan(pose)) {
-        Plan::Move(motion) => {
-            place.write(motion.into());
-            Status::Ok
-        }
-        Plan::Stop(reason) => reason.into(),
-    }
+    answer(motion, || unsafe { held::plan(finder, pose) })
 }
 
 /// Takes in where a motion ended, and what was read there: one of `planner_reading`.
@@ -226,14 +209,7 @@ pub unsafe extern "C" fn plan(
 #[unsafe(export_name = "planner_observe")]
 pub unsafe extern "C" fn observe(finder: *mut Finder, pose: Pose, reading: i32) -> Status {
     // SAFETY: the caller promises it.
-    unsafe {
-        take_in(
-            finder,
-            pose,
-            reading,
-            |finder, pose, reading| ask!(finder, it => Asked::observe(it, pose, reading)),
-        )
-    }
+    unsafe { held::observe(finder, pose, reading, None) }.into()
 }
 
 /// As `planner_observe`, of a position that may be off by so many metres, at most by the mission's tolerance. The less it
@@ -249,12 +225,7 @@ pub unsafe extern "C" fn observe_within(
     tolerance: f64,
 ) -> Status {
     // SAFETY: the caller promises it.
-    unsafe {
-        take_in(finder, pose, reading, |finder, pose, reading| {
-            let tolerance = Tolerance::new(tolerance).map_err(|_| Status::Tolerance)?;
-            ask!(finder, it => Asked::observe_within(it, pose, reading, tolerance))
-        })
-    }
+    unsafe { held::observe(finder, pose, reading, Some(tolerance)) }.into()
 }
 
 /// As `planner_observe`, of a label that is right with probability `p`, from 0 to 1. Below 1/2 it rather says the other
@@ -273,12 +244,29 @@ pub unsafe extern "C" fn observe_believed(
     p: f64,
 ) -> Status {
     // SAFETY: the caller promises it.
-    unsafe {
-        take_in(finder, pose, reading, |finder, pose, reading| {
-            let believed = Reliability::new(p).map_err(|_| Status::Reliability)?;
-            ask!(finder, it => it.observe_believed(pose, reading, believed))
-        })
-    }
+    let finder = unsafe { held(finder) };
+    finder.and_then(|finder| ask!(finder, it => believed(it, pose, reading, p))).into()
+}
+
+fn believed<B: Believe>(
+    planner: &mut Of<B>,
+    pose: Pose,
+    reading: i32,
+    p: f64,
+) -> Result<(), Status> {
+    let (pose, reading) = (pose.read()?, Reading::read(reading)?);
+    let believed = Reliability::new(p).map_err(|_| Status::Reliability)?;
+    let label = match reading {
+        Some(planner_core::Reading::Side(label)) if believed != B::usual(planner.belief()) => label,
+        _ => return Ok(planner.observe(pose, reading)?),
+    };
+    let before = planner.snapshot();
+    let sample = planner_core::Sample { site: pose.site, label };
+    planner.belief_mut().take(sample, believed).map_err(|refused| {
+        // `belief_mut` has reset the turns. The snapshot is this planner's own, so it is restored.
+        let _ = planner.restore(&before);
+        refused.into()
+    })
 }
 
 /// Takes in what was read at a place on the way, before the motion planned last has ended. The planner keeps a true label
@@ -294,56 +282,24 @@ pub unsafe extern "C" fn observe_on_the_way(
     reading: i32,
 ) -> Status {
     // SAFETY: the caller promises it.
-    let Some(finder) = (unsafe { asked(finder) }) else { return Status::Memory };
-    let observed = match (at.read(), Reading::read(reading)) {
-        (Ok(_), Ok(None)) => Ok(()),
-        (Ok(site), Ok(Some(reading))) => {
-            ask!(finder, it => Asked::observe_on_the_way(it, site, reading))
-        }
-        (Err(status), _) | (_, Err(status)) => Err(status),
-    };
-    observed.err().unwrap_or(Status::Ok)
-}
-
-/// Takes in what was read at a pose, each of which is checked.
-///
-/// # Safety
-/// `finder` must be null or from `planner_begin`.
-unsafe fn take_in(
-    finder: *mut Finder,
-    pose: Pose,
-    reading: i32,
-    observe: impl FnOnce(
-        Either<'_>,
-        planner_core::Pose,
-        Option<planner_core::Reading>,
-    ) -> Result<(), Status>,
-) -> Status {
-    // SAFETY: the caller promises it.
-    let Some(finder) = (unsafe { asked(finder) }) else { return Status::Memory };
-    match (pose.read(), Reading::read(reading)) {
-        (Ok(pose), Ok(reading)) => observe(finder, pose, reading).err().unwrap_or(Status::Ok),
-        (Err(status), _) | (_, Err(status)) => status,
-    }
+    unsafe { held::observe_on_the_way(finder, at, reading) }.into()
 }
 
 /// The line as far as it is known: the mean of all lines that are left, or in noise of their distribution.
-/// `PLANNER_STATUS_RESOLUTION` if they lie too close together for single precision.
+/// `PLANNER_STATUS_UNKNOWN` if they lie too close together for single precision.
 ///
 /// # Safety
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_estimate")]
 pub unsafe extern "C" fn estimate(
-    finder: *mut Finder,
+    finder: *const Finder,
     line: Option<&mut MaybeUninit<Line>>,
 ) -> Status {
     // SAFETY: the caller promises it.
-    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, line) else {
-        return Status::Memory;
-    };
-    let Some(centre) = ask!(finder, it => it.centre()) else { return Status::Resolution };
-    place.write(centre);
-    Status::Ok
+    answer(line, || {
+        let finder = unsafe { seen(finder) }?;
+        ask!(finder, it => it.estimate()).map(Line::from).ok_or(Status::Unknown)
+    })
 }
 
 /// What labels have told of the line so far, bits; not a number without a planner.
@@ -351,9 +307,10 @@ pub unsafe extern "C" fn estimate(
 /// # Safety
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_bits")]
-pub unsafe extern "C" fn bits(finder: *mut Finder) -> f64 {
+pub unsafe extern "C" fn bits(finder: *const Finder) -> f64 {
     // SAFETY: the caller promises it.
-    unsafe { asked(finder) }.map_or(f64::NAN, |finder| ask!(finder, it => it.bits()))
+    let finder = unsafe { seen(finder) };
+    finder.map_or(f64::NAN, |finder| ask!(finder, it => it.belief().information()))
 }
 
 /// The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1.
@@ -362,19 +319,12 @@ pub unsafe extern "C" fn bits(finder: *mut Finder) -> f64 {
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_chance")]
 pub unsafe extern "C" fn chance(
-    finder: *mut Finder,
+    finder: *const Finder,
     at: Point,
     chance: Option<&mut MaybeUninit<f64>>,
 ) -> Status {
     // SAFETY: the caller promises it.
-    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, chance) else {
-        return Status::Memory;
-    };
-    match at.read() {
-        Ok(site) => place.write(ask!(finder, it => it.chance(site))),
-        Err(status) => return status,
-    };
-    Status::Ok
+    answer(chance, || unsafe { held::chance(finder, at) })
 }
 
 /// Writes what a planner has to remember over a sleep. Keep it, and the robot's pose.
@@ -383,16 +333,20 @@ pub unsafe extern "C" fn chance(
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_save")]
 pub unsafe extern "C" fn save(
-    finder: *mut Finder,
+    finder: *const Finder,
     snapshot: Option<&mut MaybeUninit<Snapshot>>,
 ) -> Status {
-    // SAFETY: the caller promises it.
-    let (Some(finder), Some(place)) = (unsafe { asked(finder) }, snapshot) else {
-        return Status::Memory;
+    let Some(snapshot) = snapshot else { return Status::Memory };
+    let snapshot = snapshot.as_mut_ptr();
+    // SAFETY: the caller promises it of the planner. In the snapshot there is room for all its bytes, and for their count.
+    let saved = unsafe {
+        let bytes = (&raw mut (*snapshot).bytes).cast::<u8>();
+        held::save(finder, (bytes, SNAPSHOT_BYTES)).map(|count| {
+            bytes.add(count).write_bytes(0, SNAPSHOT_BYTES - count);
+            (*snapshot).count = count as u32;
+        })
     };
-    let Some(saved) = ask!(finder, it => it.save()) else { return Status::Memory };
-    place.write(saved);
-    Status::Ok
+    saved.into()
 }
 
 /// Lets a planner go on from where another was, that was begun with the same mission. Begin it first as at the start: what
@@ -403,9 +357,7 @@ pub unsafe extern "C" fn save(
 /// `finder` must be null or from `planner_begin`.
 #[unsafe(export_name = "planner_restore")]
 pub unsafe extern "C" fn restore(finder: *mut Finder, snapshot: Option<&Snapshot>) -> Status {
+    let bytes = snapshot.ok_or(Status::Memory).and_then(Snapshot::used);
     // SAFETY: the caller promises it.
-    let (Some(finder), Some(snapshot)) = (unsafe { asked(finder) }, snapshot) else {
-        return Status::Memory;
-    };
-    ask!(finder, it => Asked::restore(it, snapshot)).err().unwrap_or(Status::Ok)
+    bytes.and_then(|bytes| unsafe { held::restore(finder, bytes) }).into()
 }

@@ -1,47 +1,33 @@
-//! A planner that goes along a front or watches a stretch of it, in the caller's memory.
-//!
-//! Unsafe code is here for the same reason as in `finder`: it reads and writes behind the pointers that C passes.
+//! Planners that go along a front or watch a stretch of it, and the functions that are called of them.
 
 use core::ffi::c_void;
-use core::mem::{MaybeUninit, align_of, size_of};
+use core::mem::{MaybeUninit, size_of};
 
 use planner_core::{
-    Beside, Front, FrontState, FrontStretch, Guard, Noise, Plan, Planner as _, Prior, Restart as _,
-    Site, Track, Unicycle, Waist,
+    Beside, Front, FrontState, FrontStretch, Guard, Planner as _, Prior, Restart as _, Track,
+    Unicycle, Waist,
 };
 
 use crate::area::Ground;
-use crate::possible::MOST_GIVEN;
-use crate::snapshot;
-use crate::types::{Mission, Motion, Pose, Reading, Sample, Status};
+use crate::held::{self, Handle, Held, Kind, answer, ask, hold, seen, told};
+use crate::mission::Mission;
+use crate::parts::Parts;
+use crate::status::Status;
+use crate::types::{Motion, Point, Pose, Sample};
+use crate::verdict::{Refusal, Verdict};
 
-type Tracks = Track<Unicycle, Ground>;
-type Guards = Guard<Unicycle, Ground>;
+pub(crate) type Tracks = Track<Unicycle, Ground>;
+pub(crate) type Guards = Guard<Unicycle, Ground>;
 
 /// A planner that goes along a front or watches a stretch of it, in memory of the caller.
-#[repr(align(8))]
-pub struct Follower {
-    planner: Either,
+pub struct Follower(());
+
+impl Handle for Follower {
+    type One = Tracks;
+    type Other = Guards;
 }
 
-/// What the planner does with the front.
-#[expect(clippy::large_enum_variant, reason = "the caller has memory for either")]
-enum Either {
-    Track(Tracks),
-    Guard(Guards),
-}
-
-/// Asks either planner the same.
-macro_rules! ask {
-    ($follower:expr, $planner:ident => $asked:expr) => {
-        match &mut $follower.planner {
-            Either::Track($planner) => $asked,
-            Either::Guard($planner) => $asked,
-        }
-    };
-}
-
-/// How a front bends, and how fast it moves.
+/// How a front bends, how fast it moves, and what to do with it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct FrontSettings {
@@ -49,6 +35,12 @@ pub struct FrontSettings {
     pub radius: f64,
     /// How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
     pub speed: f64,
+    /// 0 to go along the front. Or so many metres of it, from 0.1 to 10000: the planner stays with them, about the place
+    /// where it finds the front, and learns where the front is all along them.
+    pub stretch: f64,
+    /// 1 to end once the robot has gone along all of the front: back to where it found it, or to the border at both ends.
+    /// 0 to go on. With a stretch it must be 0.
+    pub until_closed: u8,
 }
 
 /// Where a front is known best.
@@ -93,12 +85,54 @@ pub struct FrontCrossing {
 /// How much memory a planner of fronts takes, bytes.
 #[unsafe(export_name = "planner_follower_bytes")]
 pub extern "C" fn follower_bytes() -> usize {
-    size_of::<Follower>()
+    size_of::<Held<Tracks>>().max(size_of::<Held<Guards>>())
+}
+
+/// What a planner of fronts is made of, what it is told of the front, and the stretch to watch if there is one.
+fn possible(
+    (mission, given): (&Mission<'_>, &[Sample]),
+    told: FrontSettings,
+) -> Result<(Parts, Front, Option<FrontStretch>), Refusal> {
+    let refused = |what| Refusal::of(Status::Mission, what);
+    let parts = Parts::new(mission, given)?;
+    if mission.slopes != 0.0 {
+        return Err(refused(c"slopes"));
+    }
+    if mission.level != 0.0 {
+        return Err(refused(c"level"));
+    }
+    let FrontSettings { radius, speed, stretch, until_closed } = told;
+    let front = if radius == 0.0 { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
+    let front = front.map_err(|_| refused(c"radius"))?;
+    let front = front.moving(speed).map_err(|_| refused(c"speed"))?;
+    let stretch = (stretch != 0.0).then(|| FrontStretch::metres(stretch)).transpose();
+    let stretch = stretch.map_err(|_| refused(c"stretch"))?;
+    if until_closed > stretch.is_none().into() {
+        return Err(refused(c"until_closed"));
+    }
+    Ok((parts, front, stretch))
+}
+
+/// What `planner_follow` will say of a mission, of front settings and of given samples, and which part of them that is
+/// about. It needs no memory, and touches no planner.
+///
+/// # Safety
+/// As for `planner_follow`.
+#[unsafe(export_name = "planner_follower_check")]
+pub unsafe extern "C" fn follower_check(
+    mission: Option<&Mission<'_>>,
+    front: FrontSettings,
+    given: *const Sample,
+    count: usize,
+) -> Verdict {
+    // SAFETY: the caller promises it.
+    let told = unsafe { told(mission, (given, count)) };
+    told.and_then(|told| possible(told, front)).map(drop).into()
 }
 
 /// Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
 /// it is. It is that memory's beginning: there is nothing to free. Of the mission `slopes` and `level` must be 0. A call
-/// that is refused writes nothing.
+/// that is refused writes nothing: a planner that is in that memory stays as it was.
 ///
 /// # Safety
 /// `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
@@ -113,225 +147,185 @@ pub unsafe extern "C" fn follow(
     given: *const Sample,
     count: usize,
 ) -> Status {
-    // SAFETY: the caller promises the same.
-    unsafe { begin(made, (memory, bytes), mission, (front, None), (given, count)) }
+    // SAFETY: the caller promises it.
+    answer(made, || unsafe { begin_in((memory, bytes), mission, front, (given, count)) })
 }
 
-/// As `planner_follow`, but the planner stays with so many metres of the front, from 0.1 to 10000, about the place where it
-/// finds it. It learns where the front is all along them.
-///
-/// # Safety
-/// As for `planner_follow`.
-#[unsafe(export_name = "planner_watch")]
-pub unsafe extern "C" fn watch(
-    made: Option<&mut MaybeUninit<*mut Follower>>,
-    memory: *mut c_void,
-    bytes: usize,
-    mission: Option<&Mission<'_>>,
-    front: FrontSettings,
-    stretch: f64,
-    given: *const Sample,
-    count: usize,
-) -> Status {
-    // SAFETY: the caller promises the same.
-    unsafe { begin(made, (memory, bytes), mission, (front, Some(stretch)), (given, count)) }
-}
-
-/// Makes a planner of a front, and of a stretch to watch if there is one.
-///
 /// # Safety
 /// As for [`follow`].
-unsafe fn begin(
-    made: Option<&mut MaybeUninit<*mut Follower>>,
-    (memory, bytes): (*mut c_void, usize),
+unsafe fn begin_in(
+    memory: (*mut c_void, usize),
     mission: Option<&Mission<'_>>,
-    (front, stretch): (FrontSettings, Option<f64>),
-    (given, count): (*const Sample, usize),
-) -> Status {
-    let (Some(made), Some(mission)) = (made, mission) else { return Status::Memory };
-    let is_room = bytes >= size_of::<Follower>() && memory.addr().is_multiple_of(8);
-    let is_given = count == 0 || !given.is_null() && given.is_aligned();
-    if memory.is_null() || !is_room || !is_given {
-        return Status::Memory;
-    }
-    const { assert!(align_of::<Follower>() <= 8) };
-    // SAFETY: the caller promises so many samples.
-    let given = if count == 0 { &[] } else { unsafe { core::slice::from_raw_parts(given, count) } };
-    let begun = prepared(mission, (front, stretch), given).and_then(|(planner, noise, samples)| {
-        let place = memory.cast::<Follower>();
-        // SAFETY: there is room, and it is aligned.
-        let follower = unsafe {
-            place.write(Follower { planner });
-            &mut *place
+    told: FrontSettings,
+    given: (*const Sample, usize),
+) -> Result<*mut Follower, Status> {
+    // SAFETY: the caller promises it.
+    let given = unsafe { held::told(mission, given) }?;
+    let (parts, front, stretch) = possible(given, told)?;
+    let (ground, unicycle, noise) = (parts.ground, parts.unicycle, parts.noise);
+    // SAFETY (of both): the caller promises it.
+    let begun = if let Some(stretch) = stretch {
+        let make = || Guard::watching(ground, unicycle, (front, stretch), noise);
+        let make = || make().map_err(|_| Status::ToleranceTooLarge);
+        let guard: &mut Guards = unsafe { hold(memory, Kind::Other, make) }?;
+        guard.restart(parts.given(), Prior::Area, noise)
+    } else {
+        let make = || {
+            let track = Track::new(ground, unicycle, front, noise);
+            let track = track.map_err(|_| Status::ToleranceTooLarge)?;
+            Ok(if told.until_closed == 1 { track.until_closed() } else { track })
         };
-        let samples = samples.get(..given.len()).unwrap_or_default();
-        let begun = ask!(follower, it => it.restart(samples, Prior::Area, noise));
-        begun.map(|()| place).map_err(|_| Status::ToleranceTooLarge)
-    });
-    match begun {
-        Ok(place) => {
-            made.write(place);
-            Status::Ok
-        }
-        Err(status) => status,
-    }
-}
-
-type Parts = (Either, Noise, [planner_core::Sample; MOST_GIVEN]);
-
-/// A planner of a mission, its noise and its given samples.
-fn prepared(
-    mission: &Mission<'_>,
-    (FrontSettings { radius, speed }, stretch): (FrontSettings, Option<f64>),
-    given: &[Sample],
-) -> Result<Parts, Status> {
-    let label = planner_core::Label::Negative;
-    let mut samples = [planner_core::Sample { site: Site::ORIGIN, label }; MOST_GIVEN];
-    let places = samples.get_mut(..given.len()).ok_or(Status::Given)?;
-    for (place, sample) in places.iter_mut().zip(given) {
-        *place = sample.read()?;
-    }
-    let front = if radius == 0.0 { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
-    let front = front.and_then(|it| it.moving(speed)).map_err(|_| Status::Mission)?;
-    let status = |refusal: crate::verdict::Refusal| refusal.status;
-    if mission.slopes != 0.0 || mission.level != 0.0 {
-        return Err(Status::Mission);
-    }
-    let (ground, unicycle) =
-        (mission.ground().map_err(status)?, mission.unicycle().map_err(status)?);
-    let tolerance = mission.tolerance().map_err(status)?;
-    let noise = mission.noise().map_err(status)?.unwrap_or(Noise { tolerance, ..Noise::NONE });
-    let planner = match stretch {
-        None => Track::new(ground, unicycle, front, noise).map(Either::Track),
-        Some(metres) => {
-            let stretch = FrontStretch::metres(metres).map_err(|_| Status::Mission)?;
-            Guard::watching(ground, unicycle, (front, stretch), noise).map(Either::Guard)
-        }
+        let track: &mut Tracks = unsafe { hold(memory, Kind::One, make) }?;
+        track.restart(parts.given(), Prior::Area, noise)
     };
-    Ok((planner.map_err(|_| Status::ToleranceTooLarge)?, noise, samples))
+    begun.map(|()| memory.0.cast()).map_err(|_| Status::ToleranceTooLarge)
 }
 
-/// Plans the next motion from where the robot is. `Ok`, or why there is none.
+/// Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`.
+/// `follower` must be null or from `planner_follow`.
 #[unsafe(export_name = "planner_follower_plan")]
 pub unsafe extern "C" fn follower_plan(
-    follower: Option<&mut Follower>,
+    follower: *mut Follower,
     pose: Pose,
     motion: Option<&mut MaybeUninit<Motion>>,
 ) -> Status {
-    let (Some(follower), Some(place)) = (follower, motion) else { return Status::Memory };
-    let pose = match pose.read() {
-        Ok(pose) => pose,
-        Err(status) => return status,
-    };
-    match ask!(follower, it => it.plan(pose)) {
-        Plan::Move(motion) => {
-            place.write(motion.into());
-            Status::Ok
-        }
-        Plan::Stop(reason) => reason.into(),
-    }
+    // SAFETY: the caller promises it.
+    answer(motion, || unsafe { held::plan(follower, pose) })
 }
 
 /// Takes in where a motion ended, and what was read there: one of `planner_reading`.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`.
+/// `follower` must be null or from `planner_follow`.
 #[unsafe(export_name = "planner_follower_observe")]
 pub unsafe extern "C" fn follower_observe(
-    follower: Option<&mut Follower>,
+    follower: *mut Follower,
     pose: Pose,
     reading: i32,
 ) -> Status {
-    let Some(follower) = follower else { return Status::Memory };
-    match (pose.read(), Reading::read(reading)) {
-        (Ok(pose), Ok(reading)) => {
-            let observed = ask!(follower, it => it.observe(pose, reading));
-            observed.map_or_else(Status::from, |()| Status::Ok)
-        }
-        (Err(status), _) | (_, Err(status)) => status,
-    }
+    // SAFETY: the caller promises it.
+    unsafe { held::observe(follower, pose, reading, None) }.into()
 }
 
-/// Where the front is known best. `PLANNER_STATUS_UNDECIDED` as long as it is not found, and where it is lost.
+/// As `planner_follower_observe`, of a position that may be off by so many metres, at most by the mission's tolerance. The
+/// less it may be off, the more the label tells.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`.
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_follower_observe_within")]
+pub unsafe extern "C" fn follower_observe_within(
+    follower: *mut Follower,
+    pose: Pose,
+    reading: i32,
+    tolerance: f64,
+) -> Status {
+    // SAFETY: the caller promises it.
+    unsafe { held::observe(follower, pose, reading, Some(tolerance)) }.into()
+}
+
+/// Takes in what was read at a place on the way, before the motion planned last has ended. The motion goes on. Tell
+/// `planner_follower_observe` of its end as without this.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_follower_observe_on_the_way")]
+pub unsafe extern "C" fn follower_observe_on_the_way(
+    follower: *mut Follower,
+    at: Point,
+    reading: i32,
+) -> Status {
+    // SAFETY: the caller promises it.
+    unsafe { held::observe_on_the_way(follower, at, reading) }.into()
+}
+
+/// The chance that a label read at a place is +1, errors of the sensor included; from 0 to 1. It is 1/2 everywhere as long
+/// as nothing is known of the front, and it says little of places far from the robot.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
+#[unsafe(export_name = "planner_follower_chance")]
+pub unsafe extern "C" fn follower_chance(
+    follower: *const Follower,
+    at: Point,
+    chance: Option<&mut MaybeUninit<f64>>,
+) -> Status {
+    // SAFETY: the caller promises it.
+    answer(chance, || unsafe { held::chance(follower, at) })
+}
+
+/// Where the front is known best. `PLANNER_STATUS_UNKNOWN` as long as it is not found, and where it is lost.
+///
+/// # Safety
+/// `follower` must be null or from `planner_follow`.
 #[unsafe(export_name = "planner_front")]
 pub unsafe extern "C" fn front(
-    follower: Option<&mut Follower>,
+    follower: *const Follower,
     front: Option<&mut MaybeUninit<FrontPlace>>,
 ) -> Status {
-    let (Some(follower), Some(place)) = (follower, front) else { return Status::Memory };
-    let Some(FrontState { waist: Some(waist), is_closed }) = ask!(follower, it => it.front())
-    else {
-        return Status::Undecided;
-    };
-    place.write(FrontPlace::new(waist, is_closed));
-    Status::Ok
+    // SAFETY: the caller promises it.
+    answer(front, || {
+        let state = ask!(unsafe { seen(follower) }?, it => it.front());
+        let Some(FrontState { waist: Some(waist), is_closed }) = state else {
+            return Err(Status::Unknown);
+        };
+        Ok(FrontPlace::new(waist, is_closed))
+    })
 }
 
 /// Where the front crosses the line through the pose that is square to its heading. Ask it of places all along a stretch
-/// that is watched. `PLANNER_STATUS_UNDECIDED` as long as the front is not found, and where it is lost.
+/// that is watched. `PLANNER_STATUS_UNKNOWN` as long as the front is not found, and where it is lost.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`.
+/// `follower` must be null or from `planner_follow`.
 #[unsafe(export_name = "planner_front_beside")]
 pub unsafe extern "C" fn front_beside(
-    follower: Option<&mut Follower>,
+    follower: *const Follower,
     pose: Pose,
     beside: Option<&mut MaybeUninit<FrontCrossing>>,
 ) -> Status {
-    let (Some(follower), Some(place)) = (follower, beside) else { return Status::Memory };
-    let planner_core::Pose { site, heading } = match pose.read() {
-        Ok(pose) => pose,
-        Err(status) => return status,
-    };
-    let beside = ask!(follower, it => it.found().map(|_| it.beside(site, heading)));
-    let Some(Beside { left, deviation }) = beside else { return Status::Undecided };
-    place.write(FrontCrossing { left: left.into(), deviation: deviation.into() });
-    Status::Ok
+    // SAFETY: the caller promises it.
+    answer(beside, || {
+        let follower = unsafe { seen(follower) }?;
+        let planner_core::Pose { site, heading } = pose.read()?;
+        let beside = ask!(follower, it => it.found().map(|_| it.beside(site, heading)));
+        let Beside { left, deviation } = beside.ok_or(Status::Unknown)?;
+        Ok(FrontCrossing { left: left.into(), deviation: deviation.into() })
+    })
 }
 
-/// Writes what a planner of fronts has to remember over a sleep. Returns how many bytes that takes; 0 if there is not so
-/// much room, and then none is written. `planner_follower_bytes` are always enough.
+/// Writes what a planner of fronts has to remember over a sleep, and how many bytes that takes.
+/// `PLANNER_FOLLOWER_SNAPSHOT_BYTES` are always enough. If there is not so much room, nothing is written: what was saved
+/// there before stays.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or writable for so many bytes.
+/// `follower` must be null or from `planner_follow`, `bytes` null or writable for so many bytes.
 #[unsafe(export_name = "planner_follower_save")]
 pub unsafe extern "C" fn follower_save(
-    follower: Option<&mut Follower>,
+    follower: *const Follower,
     bytes: *mut u8,
     room: usize,
-) -> usize {
-    let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return 0 };
-    // An earlier snapshot stays until there is another.
-    let Some(count) = ask!(follower, it => snapshot::size(it)).filter(|it| *it <= room) else {
-        return 0;
-    };
-    // SAFETY: the caller promises more room than that.
-    let bytes = unsafe {
-        bytes.write_bytes(0, count);
-        core::slice::from_raw_parts_mut(bytes, count)
-    };
-    ask!(follower, it => snapshot::write(it, bytes)).unwrap_or(0)
+    count: Option<&mut MaybeUninit<usize>>,
+) -> Status {
+    // SAFETY: the caller promises it.
+    answer(count, || unsafe { held::save(follower, (bytes, room)) })
 }
 
 /// Lets a planner of fronts go on from where another was, that was begun with the same mission. A planner that refuses
 /// the bytes stays as it was.
 ///
 /// # Safety
-/// `follower` must be null or from `planner_follow` or `planner_watch`, `bytes` null or readable for so many bytes.
+/// `follower` must be null or from `planner_follow`, `bytes` null or readable for so many bytes.
 #[unsafe(export_name = "planner_follower_restore")]
 pub unsafe extern "C" fn follower_restore(
-    follower: Option<&mut Follower>,
+    follower: *mut Follower,
     bytes: *const u8,
     count: usize,
 ) -> Status {
-    let Some(follower) = follower.filter(|_| !bytes.is_null()) else { return Status::Memory };
-    // SAFETY: the caller promises so many bytes.
-    let bytes = unsafe { core::slice::from_raw_parts(bytes, count) };
-    ask!(follower, it => snapshot::wake(bytes, it)).err().unwrap_or(Status::Ok)
+    if bytes.is_null() {
+        return Status::Memory;
+    }
+    // SAFETY: the caller promises so many bytes, and the planner.
+    unsafe { held::restore(follower, core::slice::from_raw_parts(bytes, count)) }.into()
 }

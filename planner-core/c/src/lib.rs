@@ -16,25 +16,32 @@
 //! ```
 
 mod area;
-mod asked;
 mod finder;
 mod follower;
-mod possible;
+mod held;
+mod mission;
+mod parts;
+mod sizes;
 mod snapshot;
+mod status;
 mod types;
 mod verdict;
 
 pub use area::{Area, CORNERS, KEEP_OUTS, KeepOut};
 pub use finder::{
-    begin, bits, bytes, chance, check, estimate, observe, observe_believed, observe_on_the_way,
-    observe_within, plan, restore, save,
+    Finder, begin, bits, bytes, chance, check, estimate, observe, observe_believed,
+    observe_on_the_way, observe_within, plan, restore, save,
 };
 pub use follower::{
-    Follower, FrontCrossing, FrontPlace, FrontSettings, follow, follower_bytes, follower_observe,
-    follower_plan, follower_restore, follower_save, front, front_beside, watch,
+    Follower, FrontCrossing, FrontPlace, FrontSettings, follow, follower_bytes, follower_chance,
+    follower_check, follower_observe, follower_observe_on_the_way, follower_observe_within,
+    follower_plan, follower_restore, follower_save, front, front_beside,
 };
-pub use snapshot::{SNAPSHOT_BYTES, Snapshot};
-pub use types::{Line, Mission, Motion, Point, Pose, Reading, Sample, Status};
+pub use mission::Mission;
+pub use sizes::{ALIGNMENT, BYTES, DOUBTFUL_BYTES, FOLLOWER_BYTES};
+pub use snapshot::{FOLLOWER_SNAPSHOT_BYTES, SNAPSHOT_BYTES, Snapshot};
+pub use status::{Status, has_ended, is_refused};
+pub use types::{Line, Motion, Point, Pose, Reading, Sample};
 pub use verdict::Verdict;
 
 /// Ends the C program. The planner does not panic, but Rust requires a handler.

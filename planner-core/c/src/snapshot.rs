@@ -6,10 +6,13 @@ use planner_core::{Persist, SNAPSHOT_VERSION};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::types::Status;
+use crate::status::Status;
 
 /// Bytes that a snapshot can have: those of a planner that is full, as far from the origin as a position can be, fit in.
 pub const SNAPSHOT_BYTES: usize = 1100;
+
+/// Bytes that the snapshot of a planner of fronts can have.
+pub const FOLLOWER_SNAPSHOT_BYTES: usize = 8800;
 
 /// What a planner has to remember over a sleep. It may be kept as it is, or as its first `count` bytes alone.
 #[repr(C)]
@@ -27,38 +30,24 @@ static CHECK: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 const SUM: usize = 4;
 
 impl Snapshot {
-    /// What a planner has to remember. `None` if it does not fit; [`SNAPSHOT_BYTES`] is large enough.
-    pub(crate) fn of<P: Persist<Snapshot: Serialize>>(planner: &P) -> Option<Self> {
-        let mut bytes = [0; SNAPSHOT_BYTES];
-        let count = write(planner, &mut bytes)? as u32;
-        Some(Self { count, bytes })
-    }
-
-    /// Lets a planner go on from it. One that does not is as it was.
-    pub(crate) fn wake<P>(&self, planner: &mut P) -> Result<(), Status>
-    where
-        P: Persist<Snapshot: DeserializeOwned>,
-    {
-        let count = usize::try_from(self.count).map_err(|_| Status::SnapshotSpoilt)?;
-        wake(self.bytes.get(..count).ok_or(Status::SnapshotSpoilt)?, planner)
+    /// Those of its bytes that belong to it.
+    pub(crate) fn used(&self) -> Result<&[u8], Status> {
+        let count = usize::try_from(self.count).ok();
+        count.and_then(|count| self.bytes.get(..count)).ok_or(Status::SnapshotSpoilt)
     }
 }
 
 /// How many bytes [`write`] writes.
-pub(crate) fn size<P: Persist<Snapshot: Serialize>>(planner: &P) -> Option<usize> {
-    Some(postcard::experimental::serialized_size(&planner.snapshot()).ok()? + SUM)
+pub(crate) fn size(snapshot: &impl Serialize) -> Option<usize> {
+    Some(postcard::experimental::serialized_size(snapshot).ok()? + SUM)
 }
 
-/// Writes what a planner has to remember, and a check sum; how many bytes these are. `None` if they do not fit.
-pub(crate) fn write<P: Persist<Snapshot: Serialize>>(
-    planner: &P,
-    bytes: &mut [u8],
-) -> Option<usize> {
-    let room = bytes.len().checked_sub(SUM)?;
-    let used = postcard::to_slice(&planner.snapshot(), bytes.get_mut(..room)?).ok()?.len();
-    let sum = CHECK.checksum(bytes.get(..used)?).to_le_bytes();
-    bytes.get_mut(used..used + SUM)?.copy_from_slice(&sum);
-    Some(used + SUM)
+/// Writes what a planner has to remember, and a check sum, into as many bytes as these are.
+pub(crate) fn write(snapshot: &impl Serialize, bytes: &mut [u8]) -> Option<()> {
+    let (bytes, sum) = bytes.split_last_chunk_mut::<SUM>()?;
+    let used = postcard::to_slice(snapshot, bytes).ok()?;
+    *sum = CHECK.checksum(used).to_le_bytes();
+    Some(())
 }
 
 /// Lets a planner go on from what [`write`] wrote. One that does not is as it was.
@@ -75,12 +64,11 @@ where
     let read: P::Snapshot = postcard::from_bytes(bytes).map_err(|_| Status::SnapshotMission)?;
     let before = planner.snapshot();
     planner.restore(&read).map_err(|refused| {
-        // It made this one itself.
-        let _ = planner.restore(&before);
-        match refused {
-            RestoreError::Version(_) => Status::SnapshotVersion,
-            _ => Status::SnapshotMission,
+        if let RestoreError::Log(_) = refused {
+            // It has begun to replay. It made this one itself.
+            let _ = planner.restore(&before);
         }
+        refused.into()
     })
 }
 

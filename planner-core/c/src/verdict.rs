@@ -2,9 +2,9 @@
 
 use core::ffi::{CStr, c_char};
 
-use crate::types::Status;
+use crate::status::Status;
 
-/// What `planner_begin` says of a mission, and which part of it that is about.
+/// What is said of a mission before it begins, and which part of it that is about.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
@@ -12,14 +12,15 @@ pub struct Verdict {
     pub status: Status,
     /// The number of the sample or of the keep-out that is refused, from 0; -1 if it is none of these.
     pub number: i32,
-    /// What is refused: a field of the mission or of its area, `"given"` for the samples, `""` for nothing. Never null.
+    /// What is refused: a field of the mission, of its area or of the front settings, `"given"` for the samples, `""` for
+    /// nothing. Never null.
     pub what: *const c_char,
 }
 
 /// A refusal, and what it is about.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Refusal {
-    pub(crate) status: Status,
+    status: Status,
     what: &'static CStr,
     number: i32,
 }
@@ -32,6 +33,12 @@ impl Refusal {
     /// The same, of the part with a number.
     pub(crate) const fn about(self, number: usize) -> Self {
         Self { number: number as i32, ..self }
+    }
+}
+
+impl From<Refusal> for Status {
+    fn from(refusal: Refusal) -> Self {
+        refusal.status
     }
 }
 

@@ -85,6 +85,10 @@ fn slopes(radians: f64, level: u32) -> Goal<SlopeWithin> {
     Goal { level, ..goal }
 }
 
+fn tolerance(metres: f64) -> Tolerance {
+    Tolerance::new(metres).expect("a tolerance")
+}
+
 fn reliability(p: f64) -> Reliability {
     Reliability::new(p).expect("a probability")
 }
@@ -136,8 +140,8 @@ fn observe_within<B: PredictiveBelief>(
     number: u32,
     _: bool,
 ) {
-    let tolerance = Tolerance::new(0.02 * f64::from(number % 5 + 1)).expect("a tolerance");
-    let observed = planner.observe_within(pose, label.map(Into::into), tolerance);
+    let within = tolerance(0.02 * f64::from(number % 5 + 1));
+    let observed = planner.observe_within(pose, label.map(Into::into), within);
     observed.expect("a possible label");
 }
 
@@ -175,8 +179,8 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(
                 status = match reason {
                     StopReason::Known => 1,
                     StopReason::SamplesFull => 3,
-                    StopReason::Undecided => 11,
-                    StopReason::Tolerance => 13,
+                    StopReason::Undecided => 5,
+                    StopReason::Tolerance => 6,
                     other => panic!("{other:?}"),
                 };
                 break;
@@ -216,7 +220,7 @@ fn awake<B: PredictiveBelief<Belief: Sized>>(
 fn followed() -> [String; 2] {
     let area = Area::metres([0.0, 0.0], [120.0, 120.0]).expect("an area");
     let front = Front::bending(30.0).and_then(|it| it.moving(0.01)).expect("a front");
-    let noise = Noise::new(0.9).expect("a probability");
+    let noise = Noise { tolerance: tolerance(0.1), ..Noise::new(0.9).expect("a probability") };
     let given = [(60.0, 10.0, Label::Negative), (60.0, 50.0, Label::Positive)];
     let given = given.map(|(x, z, label)| Sample { site: at(x, z), label });
     let unicycle = Unicycle::new(10_000, 1.57, 21, 100).expect("a grid");
@@ -228,19 +232,27 @@ fn followed() -> [String; 2] {
 
 fn along<const N: usize>(mut planner: Track<Unicycle, Area, N>) -> String {
     let mut pose = Pose { site: at(60.0, 28.0), heading: Heading(0) };
-    let (mut labels, mut said) = (0, String::new());
+    let (mut labels, mut said) = (0_u32, String::new());
+    let label = |x: f64, z: f64, is_wrong| {
+        let is_inside = (x - 60.0) * (x - 60.0) + (z - 60.0) * (z - 60.0) < 900.0;
+        if is_inside == is_wrong { Label::Negative } else { Label::Positive }
+    };
     for _ in 0..130 {
         let Plan::Move(motion) = planner.plan(pose) else { break };
+        let [from, here] = [pose, motion.target].map(|it| Point2::<f64>::from(it.site));
+        let (x, z) = (f64::midpoint(from.x, here.x), f64::midpoint(from.y, here.y));
+        let on_the_way = label(x, z, false).into();
+        planner.observe_on_the_way(at(x, z), on_the_way).expect("any label goes");
         pose = motion.target;
-        let here = Point2::<f64>::from(pose.site);
         let reading = motion.wants_label.then(|| {
             labels += 1;
-            let (x, z) = (here.x - 60.0, here.y - 60.0);
-            let is_inside = x * x + z * z < 900.0;
-            if is_inside == (labels % 11 == 3) { Label::Negative } else { Label::Positive }
+            label(here.x, here.y, labels % 11 == 3)
         });
-        planner.observe(pose, reading.map(Into::into)).expect("any label goes");
-        let mut numbers = vec![here.x, here.y];
+        let chance = planner.belief().chance(pose.site);
+        let within = tolerance(0.02 * f64::from(labels % 5 + 1));
+        let observed = planner.observe_within(pose, reading.map(Into::into), within);
+        observed.expect("any label goes");
+        let mut numbers = vec![chance, here.x, here.y];
         let front = planner.front().expect("it follows one");
         if let Some(it) = front.waist {
             let at = Point2::<f64>::from(it.site);
@@ -264,7 +276,7 @@ fn awake_in(mode: &str) -> String {
     let noise = |tolerance| Noise { reliability: reliability(0.85), tolerance, ..Noise::NONE };
     let noisy =
         |tolerance| NoisyBelief::<36, 529>::new(&given(), noise(tolerance)).expect("four points");
-    let tolerance = Tolerance::new(0.1).expect("a tolerance");
+    let tolerance = tolerance(0.1);
     match mode {
         "true" => {
             let space =
@@ -318,6 +330,7 @@ fn a_c_program_flies_the_same_missions() {
     let bloom = said(&program(&library, &folder().join("bloom.c")), "");
     assert!(bloom.lines().count() > 30, "{bloom}");
     said(&program(&library, &here("misuse.c")), "");
+    said(&program(&library, &here("refused.c")), "");
     let following = program(&library, &here("following.c"));
     for (mode, here) in ["", "watch"].into_iter().zip(followed()) {
         assert_eq!(said(&following, mode), here, "{mode}");
@@ -347,7 +360,7 @@ fn the_header_compiles_as_c99_and_as_cpp11() {
     }
 }
 
-/// A program of the tests' own: one that calls wrongly and checks what it is told, and one that sleeps.
+/// A program of the tests' own: some call wrongly and check what they are told, others sleep.
 fn here(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("c").join(name)
 }
