@@ -12,7 +12,7 @@ use planner_core::{
 use planner_core::{CellPosterior, NoisyBelief, Prior, Restart as _};
 
 use crate::area::Ground;
-use crate::held::{self, Handle, Held, Kind, answer, ask, held, hold, seen, told};
+use crate::held::{self, Handle, Held, Kind, answer, ask, held, place, seen, told};
 use crate::mission::Mission;
 use crate::parts::{MOST_GIVEN, Parts};
 use crate::snapshot::{SNAPSHOT_BYTES, Snapshot};
@@ -163,29 +163,59 @@ unsafe fn begin_in(
     // SAFETY: the caller promises it.
     let (mission, given) = unsafe { told(mission, given) }?;
     let (parts, goal) = possible((mission, given))?;
-    let (area, unicycle, noise) = (parts.ground, parts.unicycle, parts.noise);
-    if mission.is_true() {
-        let make = || {
-            let space = VersionSpace::new(parts.given());
-            let space = space.and_then(|it| it.with_tolerance(noise.tolerance));
-            let planner = Lookahead::new(area, unicycle, space.map_err(|_| Status::Given)?);
-            Ok(planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal))
-        };
-        // SAFETY: the caller promises it.
-        let _: &mut True = unsafe { hold(memory, Kind::One, make) }?;
-    }
-    #[cfg(feature = "noise")]
-    if !mission.is_true() {
-        let make = || {
-            let planner = Lookahead::new(area, unicycle, NoisyBelief::NONE);
-            Ok(planner.map_err(|_| Status::ToleranceTooLarge)?.until(goal))
-        };
-        // SAFETY: the caller promises it.
-        let planner: &mut Doubtful = unsafe { hold(memory, Kind::Other, make) }?;
-        // In place: it is large.
-        planner.restart(parts.given(), Prior::Area, noise).map_err(|_| Status::Given)?;
-    }
-    Ok(memory.0.cast())
+    // SAFETY (of both): the caller promises it.
+    let begun = if mission.is_true() {
+        unsafe { begin_true(memory, &parts, goal) }
+    } else {
+        #[cfg(not(feature = "noise"))]
+        return Err(Status::Mission);
+        #[cfg(feature = "noise")]
+        unsafe {
+            begin_doubtful(memory, &parts, goal)
+        }
+    };
+    begun.map(|()| memory.0.cast())
+}
+
+/// # Safety
+/// As for [`begin`].
+#[inline(never)] // a call takes the stack of one kind, not of both
+unsafe fn begin_true(
+    memory: (*mut c_void, usize),
+    parts: &Parts,
+    goal: Option<Goal<SlopeWithin>>,
+) -> Result<(), Status> {
+    let place = place::<True>(memory)?;
+    let space = VersionSpace::new(parts.given());
+    let space = space.and_then(|it| it.with_tolerance(parts.noise.tolerance));
+    let space = space.map_err(|_| Status::Given)?;
+    let made = Lookahead::new(parts.ground, parts.unicycle, space);
+    let Ok(planner) = made else { return Err(Status::ToleranceTooLarge) };
+    // SAFETY: there is room, and it is aligned.
+    unsafe { place.write(Held { kind: Kind::One, planner: planner.until(goal) }) };
+    Ok(())
+}
+
+/// # Safety
+/// As for [`begin`].
+#[cfg(feature = "noise")]
+#[inline(never)]
+unsafe fn begin_doubtful(
+    memory: (*mut c_void, usize),
+    parts: &Parts,
+    goal: Option<Goal<SlopeWithin>>,
+) -> Result<(), Status> {
+    let place = place::<Doubtful>(memory)?;
+    let made = Lookahead::new(parts.ground, parts.unicycle, NoisyBelief::NONE);
+    let Ok(planner) = made else { return Err(Status::ToleranceTooLarge) };
+    // SAFETY: there is room, and it is aligned.
+    let planner = unsafe {
+        place.write(Held { kind: Kind::Other, planner: planner.until(goal) });
+        &mut (*place).planner
+    };
+    // In place: it is large.
+    let begun = planner.restart(parts.given(), Prior::Area, parts.noise);
+    begun.map_err(|_| Status::Given)
 }
 
 /// Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.

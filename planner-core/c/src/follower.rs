@@ -9,7 +9,7 @@ use planner_core::{
 };
 
 use crate::area::Ground;
-use crate::held::{self, Handle, Held, Kind, answer, ask, hold, seen, told};
+use crate::held::{self, Handle, Held, Kind, answer, ask, place, seen, told};
 use crate::mission::Mission;
 use crate::parts::Parts;
 use crate::status::Status;
@@ -162,23 +162,50 @@ unsafe fn begin_in(
     // SAFETY: the caller promises it.
     let given = unsafe { held::told(mission, given) }?;
     let (parts, front, stretch) = possible(given, told)?;
-    let (ground, unicycle, noise) = (parts.ground, parts.unicycle, parts.noise);
     // SAFETY (of both): the caller promises it.
-    let begun = if let Some(stretch) = stretch {
-        let make = || Guard::watching(ground, unicycle, (front, stretch), noise);
-        let make = || make().map_err(|_| Status::ToleranceTooLarge);
-        let guard: &mut Guards = unsafe { hold(memory, Kind::Other, make) }?;
-        guard.restart(parts.given(), Prior::Area, noise)
-    } else {
-        let make = || {
-            let track = Track::new(ground, unicycle, front, noise);
-            let track = track.map_err(|_| Status::ToleranceTooLarge)?;
-            Ok(if told.until_closed == 1 { track.until_closed() } else { track })
-        };
-        let track: &mut Tracks = unsafe { hold(memory, Kind::One, make) }?;
-        track.restart(parts.given(), Prior::Area, noise)
+    let begun = match stretch {
+        None => unsafe { begin_track(memory, &parts, (front, told.until_closed == 1)) },
+        Some(stretch) => unsafe { begin_guard(memory, &parts, (front, stretch)) },
     };
-    begun.map(|()| memory.0.cast()).map_err(|_| Status::ToleranceTooLarge)
+    begun.map(|()| memory.0.cast())
+}
+
+/// # Safety
+/// As for [`follow`].
+#[inline(never)] // a call takes the stack of one kind, not of both
+unsafe fn begin_track(
+    memory: (*mut c_void, usize),
+    parts: &Parts,
+    (front, ends): (Front, bool),
+) -> Result<(), Status> {
+    let place = place::<Tracks>(memory)?;
+    // SAFETY: there is room, and it is aligned.
+    let track = unsafe {
+        let planner = Track::of((parts.ground, parts.unicycle), front, ends);
+        place.write(Held { kind: Kind::One, planner });
+        &mut (*place).planner
+    };
+    let begun = track.restart(parts.given(), Prior::Area, parts.noise);
+    begun.map_err(|_| Status::ToleranceTooLarge)
+}
+
+/// # Safety
+/// As for [`follow`].
+#[inline(never)]
+unsafe fn begin_guard(
+    memory: (*mut c_void, usize),
+    parts: &Parts,
+    (front, stretch): (Front, FrontStretch),
+) -> Result<(), Status> {
+    let place = place::<Guards>(memory)?;
+    // SAFETY: there is room, and it is aligned.
+    let guard = unsafe {
+        let planner = Guard::guard_of((parts.ground, parts.unicycle), front, stretch);
+        place.write(Held { kind: Kind::Other, planner });
+        &mut (*place).planner
+    };
+    let begun = guard.restart(parts.given(), Prior::Area, parts.noise);
+    begun.map_err(|_| Status::ToleranceTooLarge)
 }
 
 /// Plans the next motion from where the robot is. `PLANNER_STATUS_OK`, or why the mission is over.

@@ -38,7 +38,7 @@ pub(crate) enum Kind {
 /// A planner with its kind before it.
 #[repr(C, align(8))]
 pub(crate) struct Held<P> {
-    kind: Kind,
+    pub(crate) kind: Kind,
     pub(crate) planner: P,
 }
 
@@ -62,14 +62,14 @@ pub(crate) use ask;
 /// The planner that a pointer leads to, to ask it.
 ///
 /// # Safety
-/// The pointer must be null or what [`hold`] returned for this handle, and nobody may change the planner meanwhile.
+/// The pointer must be null or where a planner of this handle [was written](place), and nobody may change the planner meanwhile.
 pub(crate) unsafe fn seen<'a, H: Handle + 'a>(
     handle: *const H,
 ) -> Result<Either<&'a H::One, &'a H::Other>, Status> {
     if handle.is_null() {
         return Err(Status::Memory);
     }
-    // SAFETY: only `hold` makes a handle, of a planner of its kind.
+    // SAFETY: only with a planner of its kind is there a handle.
     unsafe {
         Ok(match *handle.cast::<Kind>() {
             Kind::One => Either::One(&(*handle.cast::<Held<H::One>>()).planner),
@@ -97,25 +97,11 @@ pub(crate) unsafe fn held<'a, H: Handle + 'a>(
     }
 }
 
-/// Writes a planner into memory that is large enough and aligned.
-///
-/// # Safety
-/// The memory must be null or writable for so many bytes.
-pub(crate) unsafe fn hold<'a, P: 'a>(
-    (memory, bytes): (*mut c_void, usize),
-    kind: Kind,
-    made: impl FnOnce() -> Result<P, Status>,
-) -> Result<&'a mut P, Status> {
+/// The place of a planner in memory that is large enough and aligned.
+pub(crate) fn place<P>((memory, bytes): (*mut c_void, usize)) -> Result<*mut Held<P>, Status> {
     let place = memory.cast::<Held<P>>();
-    if place.is_null() || !place.is_aligned() || bytes < size_of::<Held<P>>() {
-        return Err(Status::Memory);
-    }
-    let planner = made()?;
-    // SAFETY: there is room, and it is aligned.
-    unsafe {
-        place.write(Held { kind, planner });
-        Ok(&mut (*place).planner)
-    }
+    let is_room = !place.is_null() && place.is_aligned() && bytes >= size_of::<Held<P>>();
+    is_room.then_some(place).ok_or(Status::Memory)
 }
 
 /// A mission, and its given samples.
@@ -234,6 +220,7 @@ pub(crate) unsafe fn save<H: Handle>(
 
 /// # Safety
 /// As for [`save`].
+#[inline(never)] // a call takes the stack of one kind, not of both
 unsafe fn write<P: Asked>(planner: &P, (bytes, room): (*mut u8, usize)) -> Result<usize, Status> {
     let snapshot = planner.snapshot();
     let count = snapshot::size(&snapshot).filter(|it| *it <= room && !bytes.is_null());

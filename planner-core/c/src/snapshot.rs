@@ -51,6 +51,7 @@ pub(crate) fn write(snapshot: &impl Serialize, bytes: &mut [u8]) -> Option<()> {
 }
 
 /// Lets a planner go on from what [`write`] wrote. One that does not is as it was.
+#[inline(never)] // a call takes the stack of one kind of planner, not of both
 pub(crate) fn wake<P>(bytes: &[u8], planner: &mut P) -> Result<(), Status>
 where
     P: Persist<Snapshot: DeserializeOwned>,
@@ -61,9 +62,14 @@ where
     if version != SNAPSHOT_VERSION {
         return Err(Status::SnapshotVersion);
     }
-    let read: P::Snapshot = postcard::from_bytes(bytes).map_err(|_| Status::SnapshotMission)?;
+    let Ok(read) = postcard::from_bytes(bytes) else { return Err(Status::SnapshotMission) };
+    go_on(planner, &read)
+}
+
+#[inline(never)] // what it remembers is not on the stack while bytes are read
+fn go_on<P: Persist>(planner: &mut P, from: &P::Snapshot) -> Result<(), Status> {
     let before = planner.snapshot();
-    planner.restore(&read).map_err(|refused| {
+    planner.restore(from).map_err(|refused| {
         if let RestoreError::Log(_) = refused {
             // It has begun to replay. It made this one itself.
             let _ = planner.restore(&before);

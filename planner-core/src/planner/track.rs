@@ -140,6 +140,13 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
         Self::made((area, dynamics), (front, 0.0), noise.into())
     }
 
+    /// The same in the part of an area that motions [aim for](crate::aimed_for), for one that is
+    /// [restarted](Restart::restart) where it stays before it plans. It may [end](Self::until_closed).
+    #[inline]
+    pub fn of(of: (G, D), front: Front, ends: bool) -> Self {
+        Self { ends, ..Self::blank(of, (front, 0.0)) }
+    }
+
     /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been
     /// followed to the border at both ends. Of [several](Seeking::several) patches it seeks the next one first.
     #[must_use]
@@ -172,6 +179,12 @@ impl<D: Dynamics, G: Workspace> Guard<D, G> {
         Self::made((area, dynamics), (front, stretch.length()), noise.into())
     }
 
+    /// As [`Track::of`].
+    #[inline]
+    pub fn guard_of(of: (G, D), front: Front, stretch: FrontStretch) -> Self {
+        Self::blank(of, (front, stretch.length()))
+    }
+
     /// The middle of the stretch, and its direction. `None` before the front is found.
     pub fn stretch(&self) -> Option<Pose> {
         self.stretch.middle()
@@ -194,7 +207,7 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         Ok(track)
     }
 
-    /// One in the part of an area that motions [aim for](crate::planner::setup::aimed_for), which is
+    /// One in the part of an area that motions [aim for](crate::aimed_for), which is
     /// [restarted](Restart::restart) before it plans. A stretch of no length is not watched.
     #[inline]
     pub(crate) fn blank(of: (G, D), (front, stretch): (Front, f32), ends: bool) -> Self {

@@ -1,10 +1,10 @@
-/* Calls the C interface wrongly in each way that it can tell, and checks what it is told. */
+/* Calls the C interface wrongly, and checks what it is told of missions, areas, labels and snapshots. */
 #include "planner.h"
 
 #include <stdio.h>
 #include <string.h>
 
-static uint64_t memory[4096];
+static uint64_t memory[PLANNER_DOUBTFUL_BYTES / sizeof(uint64_t)];
 
 #define IS(call, expected) \
     do { \
@@ -133,7 +133,7 @@ static int areas(const planner_mission *good, const planner_sample *given) {
 /* Observations that bring a tolerance or a reliability of their own, and the chance of +1. */
 static int observations(const planner_mission *good, const planner_mission *doubtful, const planner_sample *given) {
     int failed = 0;
-    const planner_pose pose = {10.0, 8.0, 0.0}, nowhere = {0.0, 0.0 / 0.0, 0.0};
+    const planner_pose pose = {10.0, 8.0, 0.0};
     const planner_point here = {10.0, 8.0}, far = {9000.0, 0.0};
     const int32_t positive = PLANNER_READING_POSITIVE;
     double chance = 7.0;
@@ -145,17 +145,9 @@ static int observations(const planner_mission *good, const planner_mission *doub
         IS(planner_begin(&planner, memory, sizeof memory, missions[i], given, 4), PLANNER_STATUS_OK);
         IS(planner_chance(planner, far, &chance), PLANNER_STATUS_POSITION);
         IS(planner_chance(planner, here, NULL), PLANNER_STATUS_MEMORY);
-        IS(planner_chance(NULL, here, &chance), PLANNER_STATUS_MEMORY);
         IS(chance == 7.0, 1);
         IS(planner_observe_within(planner, pose, positive, missions[i]->tolerance + 0.01), PLANNER_STATUS_TOLERANCE);
-        IS(planner_observe_within(planner, pose, positive, -0.01), PLANNER_STATUS_TOLERANCE);
         IS(planner_observe_within(planner, pose, positive, 0.0 / 0.0), PLANNER_STATUS_TOLERANCE);
-        IS(planner_observe_within(planner, nowhere, positive, 0.0), PLANNER_STATUS_POSITION);
-        IS(planner_observe_within(planner, pose, 3, 0.0), PLANNER_STATUS_READING);
-        IS(planner_observe_within(NULL, pose, positive, 0.0), PLANNER_STATUS_MEMORY);
-        IS(planner_observe_on_the_way(planner, far, positive), PLANNER_STATUS_POSITION);
-        IS(planner_observe_on_the_way(planner, here, 3), PLANNER_STATUS_READING);
-        IS(planner_observe_on_the_way(NULL, here, positive), PLANNER_STATUS_MEMORY);
         IS(planner_observe_on_the_way(planner, here, PLANNER_READING_NONE), PLANNER_STATUS_OK);
         IS(planner_observe_believed(planner, pose, positive, 1.1), PLANNER_STATUS_RELIABILITY);
         IS(planner_observe_believed(planner, pose, positive, -0.1), PLANNER_STATUS_RELIABILITY);
@@ -164,9 +156,6 @@ static int observations(const planner_mission *good, const planner_mission *doub
         bool takes_it = i == 1;
         planner_status expected = takes_it ? PLANNER_STATUS_OK : PLANNER_STATUS_RELIABILITY;
         IS(planner_bits(planner) < 1e-6, 1);
-        IS(planner_observe_believed(planner, nowhere, positive, missions[i]->p), PLANNER_STATUS_POSITION);
-        IS(planner_observe_believed(planner, pose, 3, missions[i]->p), PLANNER_STATUS_READING);
-        IS(planner_observe_believed(NULL, pose, positive, missions[i]->p), PLANNER_STATUS_MEMORY);
         IS(planner_observe_believed(planner, pose, positive, 0.7), expected);
         IS(planner_bits(planner) > 1e-6, takes_it);
         IS(planner_observe_believed(planner, pose, positive, missions[i]->p), PLANNER_STATUS_OK);
@@ -220,8 +209,6 @@ static int snapshots(const planner_mission *good, const planner_mission *doubtfu
         planner_t *planner = NULL;
         IS(planner_begin(&planner, memory, sizeof memory, missions[i], given, 4), PLANNER_STATUS_OK);
         IS(planner_observe(planner, pose, PLANNER_READING_POSITIVE), PLANNER_STATUS_OK);
-        IS(planner_save(NULL, &saved[i]), PLANNER_STATUS_MEMORY);
-        IS(planner_save(planner, NULL), PLANNER_STATUS_MEMORY);
         IS(planner_save(planner, &saved[i]), PLANNER_STATUS_OK);
         IS(saved[i].count > 40 && saved[i].count < 120, 1);
     }
@@ -232,8 +219,6 @@ static int snapshots(const planner_mission *good, const planner_mission *doubtfu
         IS(planner_observe(planner, pose, PLANNER_READING_POSITIVE), PLANNER_STATUS_OK);
         IS(planner_plan(planner, pose, &before), PLANNER_STATUS_OK);
         double bits = planner_bits(planner);
-        IS(planner_restore(NULL, &saved[i]), PLANNER_STATUS_MEMORY);
-        IS(planner_restore(planner, NULL), PLANNER_STATUS_MEMORY);
         IS(planner_restore(planner, &saved[1 - i]), PLANNER_STATUS_SNAPSHOT_MISSION);
         for (uint32_t byte = 0; byte < saved[i].count; byte++) {
             spoilt = saved[i], spoilt.bytes[byte] ^= (uint8_t)(1u << byte % 8);
@@ -300,13 +285,7 @@ int main(void) {
     uint8_t *at = (uint8_t *)memory;
     size_t size = sizeof memory;
 
-    IS(planner_begin(NULL, at, size, &good, given, 4), PLANNER_STATUS_MEMORY);
-    IS(planner_begin(&planner, NULL, size, &good, given, 4), PLANNER_STATUS_MEMORY);
-    IS(planner_begin(&planner, at + 1, size - 1, &good, given, 4), PLANNER_STATUS_MEMORY);
     IS(planner_begin(&planner, at, planner_bytes(&good) - 1, &good, given, 4), PLANNER_STATUS_MEMORY);
-    IS(planner_begin(&planner, at, size, NULL, given, 4), PLANNER_STATUS_MEMORY);
-    IS(planner_begin(&planner, at, size, &good, NULL, 4), PLANNER_STATUS_MEMORY);
-    IS(planner_begin(&planner, at, size, &good, given, 17), PLANNER_STATUS_GIVEN);
     IS(planner_begin(&planner, at, size, &good, given, 0), PLANNER_STATUS_GIVEN);
     IS(planner_begin(&planner, at, size, &good, inseparable, 4), PLANNER_STATUS_GIVEN);
     planner_mission bad = good;
@@ -327,18 +306,10 @@ int main(void) {
     IS(planner != NULL, 0);
 
     IS(planner_begin(&planner, at, planner_bytes(&good), &good, given, 4), PLANNER_STATUS_OK);
-    planner_pose pose = {2.0, 1.0, 0.0}, nowhere = {0.0 / 0.0, 0.0, 0.0};
+    const planner_pose pose = {2.0, 1.0, 0.0};
     planner_motion motion;
     planner_line line;
-    IS(planner_plan(NULL, pose, &motion), PLANNER_STATUS_MEMORY);
-    IS(planner_plan(planner, pose, NULL), PLANNER_STATUS_MEMORY);
-    IS(planner_plan(planner, nowhere, &motion), PLANNER_STATUS_POSITION);
-    IS(planner_observe(NULL, pose, PLANNER_READING_POSITIVE), PLANNER_STATUS_MEMORY);
-    IS(planner_observe(planner, nowhere, PLANNER_READING_POSITIVE), PLANNER_STATUS_POSITION);
-    IS(planner_observe(planner, pose, 7), PLANNER_STATUS_READING);
     IS(planner_observe(planner, pose, PLANNER_READING_POSITIVE), PLANNER_STATUS_CONTRADICTION);
-    IS(planner_estimate(planner, NULL), PLANNER_STATUS_MEMORY);
-    IS(planner_estimate(NULL, &line), PLANNER_STATUS_MEMORY);
     IS(planner_bits(NULL) == planner_bits(NULL), 0);
     /* What was refused left it as it was. */
     IS(planner_plan(planner, pose, &motion), PLANNER_STATUS_OK);

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use chips::program;
+use chips::program::graph::Graph;
+use chips::program::image::Image;
 use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
@@ -358,6 +360,74 @@ fn the_header_compiles_as_c99_and_as_cpp11() {
         let errors = String::from_utf8_lossy(&built.stderr).into_owned();
         assert!(built.status.success(), "{standard}: {errors}");
     }
+}
+
+/// Calls, and the stack that docs/c.md says they take on a Cortex-M4F at most, bytes.
+const STACKS: [(&str, &[&str], u32); 10] = [
+    ("`planner_begin`", &["begin", "check"], 18_000),
+    ("`planner_plan`", &["plan"], 11_000),
+    (
+        "`planner_observe` and others",
+        &["observe", "observe_within", "observe_believed", "observe_on_the_way"],
+        5_500,
+    ),
+    ("`planner_estimate` and others", &["estimate", "bits", "chance"], 3_500),
+    ("`planner_save`, `planner_restore`", &["save", "restore"], 11_000),
+    ("`planner_follow`", &["follow", "follower_check"], 24_000),
+    ("`planner_follower_plan`", &["follower_plan"], 6_500),
+    (
+        "`planner_follower_observe` and others",
+        &["follower_observe", "follower_observe_within", "follower_observe_on_the_way"],
+        3_000,
+    ),
+    ("`planner_front` and others", &["front", "front_beside", "follower_chance"], 1_500),
+    ("`planner_follower_save`, `_restore`", &["follower_save", "follower_restore"], 33_000),
+];
+
+/// Bounds from the machine code of all functions, linked for a chip.
+#[test]
+fn calls_take_the_stack_that_the_page_says() {
+    let Some(library) = program::folder("planner-c", program::CHIP, "") else { return };
+    let calls = STACKS.iter().flat_map(|(_, calls, _)| *calls);
+    let vectors: String = calls.map(|call| format!("LONG(planner_{call}) ")).collect();
+    let script = format!(
+        "SECTIONS {{ .vector_table 0 : {{ LONG(0) {vectors} }} .text : {{ *(.text*) }} .rodata : {{ *(.rodata*) }} \
+         /DISCARD/ : {{ *(.ARM.ex*) }} }} abort = planner_has_ended;"
+    );
+    let [place, elf] = ["c.x", "c.elf"].map(|it| scratch().join(it));
+    fs::write(&place, script).expect("writes the script");
+    let linked = Command::new(linker())
+        .args(["-flavor", "gnu", "--gc-sections", "--undefined=planner_has_ended", "-T"])
+        .arg(&place)
+        .arg(library.join("libplanner_c.a"))
+        .arg("-o")
+        .arg(&elf)
+        .output()
+        .expect("the linker starts");
+    assert!(linked.status.success(), "{}", String::from_utf8_lossy(&linked.stderr));
+    let image = Image::read(&fs::read(elf).expect("an ELF"));
+    let graph = Graph::of(&image, &[]).expect("calls that are known");
+    let page = fs::read_to_string(folder().join("../../docs/c.md")).expect("the page");
+    for (name, calls, most) in STACKS {
+        let row = format!("| {name} | {most} |");
+        assert!(page.contains(&row), "docs/c.md needs {row}");
+        let bounds = calls.iter().map(|call| {
+            let [function] = graph.named(|it| it == format!("planner_{call}"))[..] else {
+                panic!("no {call}");
+            };
+            graph.deepest(function, &[]).expect("no recursion").stack
+        });
+        let bound = bounds.max().expect("a call");
+        assert!(bound <= most && bound > most / 5 * 4, "{name}: {bound} of {most}");
+    }
+}
+
+/// The linker that comes with the compiler.
+fn linker() -> PathBuf {
+    let sysroot =
+        Command::new("rustc").args(["--print", "sysroot"]).output().expect("rustc starts");
+    let sysroot = String::from_utf8(sysroot.stdout).expect("text");
+    Path::new(sysroot.trim()).join("lib/rustlib").join(host()).join("bin/rust-lld")
 }
 
 /// A program of the tests' own: some call wrongly and check what they are told, others sleep.
