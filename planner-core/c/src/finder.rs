@@ -12,7 +12,7 @@ use planner_core::{
 use planner_core::{CellPosterior, NoisyBelief, Prior, Restart as _};
 
 use crate::area::Ground;
-use crate::held::{self, Handle, Held, Kind, answer, ask, held, place, seen, told};
+use crate::held::{self, Handle, Held, Kind, answer, ask, get, get_mut, inputs, place};
 use crate::mission::Mission;
 use crate::parts::{MOST_GIVEN, Parts};
 use crate::snapshot::{SNAPSHOT_BYTES, Snapshot};
@@ -93,7 +93,7 @@ pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
     }
 }
 
-/// What a planner is made of, and its goal.
+/// The parts of a planner, and its goal.
 fn possible(
     (mission, given): (&Mission<'_>, &[Sample]),
 ) -> Result<(Parts, Option<Goal<SlopeWithin>>), Refusal> {
@@ -129,8 +129,8 @@ pub unsafe extern "C" fn check(
     count: usize,
 ) -> Verdict {
     // SAFETY: the caller promises it.
-    let told = unsafe { told(mission, (given, count)) };
-    told.and_then(possible).map(drop).into()
+    let inputs = unsafe { inputs(mission, (given, count)) };
+    inputs.and_then(possible).map(drop).into()
 }
 
 /// Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
@@ -161,7 +161,7 @@ unsafe fn begin_in(
     given: (*const Sample, usize),
 ) -> Result<*mut Finder, Status> {
     // SAFETY: the caller promises it.
-    let (mission, given) = unsafe { told(mission, given) }?;
+    let (mission, given) = unsafe { inputs(mission, given) }?;
     let (parts, goal) = possible((mission, given))?;
     // SAFETY (of both): the caller promises it.
     let begun = if mission.is_true() {
@@ -179,7 +179,7 @@ unsafe fn begin_in(
 
 /// # Safety
 /// As for [`begin`].
-#[inline(never)] // a call takes the stack of one kind, not of both
+#[inline(never)] // a call needs the stack of one kind, not of both
 unsafe fn begin_true(
     memory: (*mut c_void, usize),
     parts: &Parts,
@@ -189,10 +189,9 @@ unsafe fn begin_true(
     let space = VersionSpace::new(parts.given());
     let space = space.and_then(|it| it.with_tolerance(parts.noise.tolerance));
     let space = space.map_err(|_| Status::Given)?;
-    let made = Lookahead::new(parts.ground, parts.unicycle, space);
-    let Ok(planner) = made else { return Err(Status::ToleranceTooLarge) };
+    let planner = Lookahead::of((parts.ground, parts.unicycle), space, goal);
     // SAFETY: there is room, and it is aligned.
-    unsafe { place.write(Held { kind: Kind::One, planner: planner.until(goal) }) };
+    unsafe { place.write(Held { kind: Kind::One, planner }) };
     Ok(())
 }
 
@@ -206,11 +205,10 @@ unsafe fn begin_doubtful(
     goal: Option<Goal<SlopeWithin>>,
 ) -> Result<(), Status> {
     let place = place::<Doubtful>(memory)?;
-    let made = Lookahead::new(parts.ground, parts.unicycle, NoisyBelief::NONE);
-    let Ok(planner) = made else { return Err(Status::ToleranceTooLarge) };
     // SAFETY: there is room, and it is aligned.
     let planner = unsafe {
-        place.write(Held { kind: Kind::Other, planner: planner.until(goal) });
+        let planner = Lookahead::of((parts.ground, parts.unicycle), NoisyBelief::NONE, goal);
+        place.write(Held { kind: Kind::Other, planner });
         &mut (*place).planner
     };
     // In place: it is large.
@@ -274,7 +272,7 @@ pub unsafe extern "C" fn observe_believed(
     p: f64,
 ) -> Status {
     // SAFETY: the caller promises it.
-    let finder = unsafe { held(finder) };
+    let finder = unsafe { get_mut(finder) };
     finder.and_then(|finder| ask!(finder, it => believed(it, pose, reading, p))).into()
 }
 
@@ -327,7 +325,7 @@ pub unsafe extern "C" fn estimate(
 ) -> Status {
     // SAFETY: the caller promises it.
     answer(line, || {
-        let finder = unsafe { seen(finder) }?;
+        let finder = unsafe { get(finder) }?;
         ask!(finder, it => it.estimate()).map(Line::from).ok_or(Status::Unknown)
     })
 }
@@ -339,7 +337,7 @@ pub unsafe extern "C" fn estimate(
 #[unsafe(export_name = "planner_bits")]
 pub unsafe extern "C" fn bits(finder: *const Finder) -> f64 {
     // SAFETY: the caller promises it.
-    let finder = unsafe { seen(finder) };
+    let finder = unsafe { get(finder) };
     finder.map_or(f64::NAN, |finder| ask!(finder, it => it.belief().information()))
 }
 

@@ -1,4 +1,4 @@
-//! What every planner is made of, read from a mission and its given samples before any memory is written.
+//! The parts of every planner, read from a mission and its given samples before any memory is written.
 
 use planner_core::{Label, Noise, Site, Unicycle, aimed_for};
 
@@ -13,6 +13,7 @@ pub(crate) const MOST_GIVEN: usize = 16;
 
 /// Parts that agree with each other.
 pub(crate) struct Parts {
+    /// The part of the area that motions aim for.
     pub(crate) ground: Ground,
     pub(crate) unicycle: Unicycle,
     /// How often labels are right, and how far positions may be off.
@@ -36,7 +37,7 @@ impl Parts {
         }
         let (ground, noise, unicycle) = (mission.ground()?, mission.noise()?, mission.unicycle()?);
         let too_large = Refusal::of(Status::ToleranceTooLarge, c"tolerance");
-        aimed_for(ground, &unicycle, noise.tolerance).map_err(|_| too_large)?;
+        let ground = aimed_for(ground, &unicycle, noise.tolerance).map_err(|_| too_large)?;
         Ok(Self { ground, unicycle, noise, samples, count: given.len() })
     }
 

@@ -140,15 +140,21 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace> Lookahead<D, B, G> {
     #[inline] // it is made where it stays, as it may be large
     pub fn new(area: G, dynamics: D, belief: B) -> Result<Self, SetupError> {
         let area = aimed_for_by(area, &dynamics, belief.belief())?;
-        Ok(Self::of((area, dynamics), belief, DrivingPrice::USUAL, EVALUATIONS, None))
+        Ok(Self::of((area, dynamics), belief, None))
     }
 }
 
 impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion> Lookahead<D, B, G, C> {
-    /// The same in the part of an area that motions aim for, with all that can be chosen. A planner may be large, and a
-    /// chip has no room for a copy of it.
+    /// The same in the part of an area that motions [aim for](crate::planner::setup::aimed_for), and with a goal if there is
+    /// one. A planner may be large, and a chip has no room for a copy of it.
     #[inline]
-    pub(crate) fn of(
+    pub fn of(of: (G, D), belief: B, goal: Option<Goal<C>>) -> Self {
+        Self::with_all(of, belief, DrivingPrice::USUAL, EVALUATIONS, goal)
+    }
+
+    /// The same, with all that can be chosen.
+    #[inline]
+    pub(crate) fn with_all(
         (area, dynamics): (G, D),
         belief: B,
         price: DrivingPrice,

@@ -147,7 +147,7 @@ impl Setup {
         self.check(capacity)?;
         let space = self.space()?;
         let price = options.weight.into();
-        let planner = Lookahead::of((area, dynamics), space, price, evaluations, goal);
+        let planner = Lookahead::with_all((area, dynamics), space, price, evaluations, goal);
         let planner = planner.seeing(sight);
         Ok(Prepared { planner, capacity })
     }
@@ -177,7 +177,8 @@ impl Setup {
         sight: S,
     ) -> Lookahead<D, NoisyBelief<N, H>, G, Accuracy, S> {
         let price = options.weight.into();
-        Lookahead::of((area, dynamics), NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
+        let of = (area, dynamics);
+        Lookahead::with_all(of, NoisyBelief::NONE, price, evaluations, goal).seeing(sight)
     }
 
     /// The follower of fronts for this mission, with none of its samples yet: the memory for
