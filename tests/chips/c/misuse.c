@@ -1,5 +1,6 @@
 /* Calls the C interface wrongly, and checks what it is told of missions, areas, labels and snapshots. */
 #include "planner.h"
+#include "seal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -188,17 +189,6 @@ static int observations(const planner_mission *good, const planner_mission *doub
     return failed;
 }
 
-/* Puts the check sum right: CRC-32, its lowest byte first. */
-static void seal(planner_snapshot *snapshot) {
-    uint32_t sum = 0xffffffff;
-    uint32_t end = snapshot->count - 4;
-    for (uint32_t i = 0; i < end; i++) {
-        sum ^= snapshot->bytes[i];
-        for (int bit = 0; bit < 8; bit++) sum = sum >> 1 ^ (sum & 1 ? 0xedb88320 : 0);
-    }
-    for (int i = 0; i < 4; i++) snapshot->bytes[end + i] = (uint8_t)(~sum >> 8 * i);
-}
-
 /* Snapshots that are spoilt, of another version, or of another mission. */
 static int snapshots(const planner_mission *good, const planner_mission *doubtful, const planner_sample *given) {
     int failed = 0;
@@ -231,10 +221,10 @@ static int snapshots(const planner_mission *good, const planner_mission *doubtfu
         }
         /* The version comes first, the check sum last. */
         spoilt = saved[i], spoilt.bytes[0] += 1;
-        seal(&spoilt);
+        seal(spoilt.bytes, spoilt.count);
         IS(planner_restore(planner, &spoilt), PLANNER_STATUS_SNAPSHOT_VERSION);
         spoilt = saved[i], spoilt.bytes[1] = 2; /* so many given samples */
-        seal(&spoilt);
+        seal(spoilt.bytes, spoilt.count);
         IS(planner_restore(planner, &spoilt), PLANNER_STATUS_SNAPSHOT_MISSION);
         for (int erased = 0; erased < 256; erased += 255) {
             memset(&spoilt, erased, sizeof spoilt);
