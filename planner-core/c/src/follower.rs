@@ -9,7 +9,7 @@ use planner_core::{
 };
 
 use crate::area::Ground;
-use crate::held::{self, Handle, Held, Kind, answer, ask, place, seen, told};
+use crate::held::{self, Handle, Held, Kind, answer, ask, get, inputs, place};
 use crate::mission::Mission;
 use crate::parts::Parts;
 use crate::status::Status;
@@ -88,10 +88,10 @@ pub extern "C" fn follower_bytes() -> usize {
     size_of::<Held<Tracks>>().max(size_of::<Held<Guards>>())
 }
 
-/// What a planner of fronts is made of, what it is told of the front, and the stretch to watch if there is one.
+/// The parts of a planner of fronts, the front, and the stretch to watch if there is one.
 fn possible(
     (mission, given): (&Mission<'_>, &[Sample]),
-    told: FrontSettings,
+    settings: FrontSettings,
 ) -> Result<(Parts, Front, Option<FrontStretch>), Refusal> {
     let refused = |what| Refusal::of(Status::Mission, what);
     let parts = Parts::new(mission, given)?;
@@ -101,7 +101,7 @@ fn possible(
     if mission.level != 0.0 {
         return Err(refused(c"level"));
     }
-    let FrontSettings { radius, speed, stretch, until_closed } = told;
+    let FrontSettings { radius, speed, stretch, until_closed } = settings;
     let front = if radius == 0.0 { Ok(Front::STRAIGHT) } else { Front::bending(radius) };
     let front = front.map_err(|_| refused(c"radius"))?;
     let front = front.moving(speed).map_err(|_| refused(c"speed"))?;
@@ -126,8 +126,8 @@ pub unsafe extern "C" fn follower_check(
     count: usize,
 ) -> Verdict {
     // SAFETY: the caller promises it.
-    let told = unsafe { told(mission, (given, count)) };
-    told.and_then(|told| possible(told, front)).map(drop).into()
+    let inputs = unsafe { inputs(mission, (given, count)) };
+    inputs.and_then(|inputs| possible(inputs, front)).map(drop).into()
 }
 
 /// Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
@@ -156,15 +156,15 @@ pub unsafe extern "C" fn follow(
 unsafe fn begin_in(
     memory: (*mut c_void, usize),
     mission: Option<&Mission<'_>>,
-    told: FrontSettings,
+    settings: FrontSettings,
     given: (*const Sample, usize),
 ) -> Result<*mut Follower, Status> {
     // SAFETY: the caller promises it.
-    let given = unsafe { held::told(mission, given) }?;
-    let (parts, front, stretch) = possible(given, told)?;
+    let inputs = unsafe { inputs(mission, given) }?;
+    let (parts, front, stretch) = possible(inputs, settings)?;
     // SAFETY (of both): the caller promises it.
     let begun = match stretch {
-        None => unsafe { begin_track(memory, &parts, (front, told.until_closed == 1)) },
+        None => unsafe { begin_track(memory, &parts, (front, settings.until_closed == 1)) },
         Some(stretch) => unsafe { begin_guard(memory, &parts, (front, stretch)) },
     };
     begun.map(|()| memory.0.cast())
@@ -172,7 +172,7 @@ unsafe fn begin_in(
 
 /// # Safety
 /// As for [`follow`].
-#[inline(never)] // a call takes the stack of one kind, not of both
+#[inline(never)] // a call needs the stack of one kind, not of both
 unsafe fn begin_track(
     memory: (*mut c_void, usize),
     parts: &Parts,
@@ -293,7 +293,7 @@ pub unsafe extern "C" fn front(
 ) -> Status {
     // SAFETY: the caller promises it.
     answer(front, || {
-        let state = ask!(unsafe { seen(follower) }?, it => it.front());
+        let state = ask!(unsafe { get(follower) }?, it => it.front());
         let Some(FrontState { waist: Some(waist), is_closed }) = state else {
             return Err(Status::Unknown);
         };
@@ -314,7 +314,7 @@ pub unsafe extern "C" fn front_beside(
 ) -> Status {
     // SAFETY: the caller promises it.
     answer(beside, || {
-        let follower = unsafe { seen(follower) }?;
+        let follower = unsafe { get(follower) }?;
         let planner_core::Pose { site, heading } = pose.read()?;
         let beside = ask!(follower, it => it.found().map(|_| it.beside(site, heading)));
         let Beside { left, deviation } = beside.ok_or(Status::Unknown)?;

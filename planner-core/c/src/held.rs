@@ -1,7 +1,7 @@
-//! A planner in the caller's memory, of either of two kinds, and what is asked of both kinds and through every handle.
+//! A planner of one of two kinds in the caller's memory, and the calls that planners of lines and of fronts share.
 //!
-//! The only unsafe code is here and where C calls: it reads and writes behind the pointers that C passes. A null pointer is
-//! refused. The caller promises that all others are as the header requires.
+//! Unsafe code is here and in the functions that C calls. It reads and writes behind the pointers that C passes. A null pointer
+//! is refused. The caller promises that all other pointers are as the header requires.
 
 use core::ffi::c_void;
 use core::mem::{MaybeUninit, size_of};
@@ -17,13 +17,13 @@ use crate::status::Status;
 use crate::types::{Motion, Point, Pose, Reading, Sample};
 use crate::verdict::Refusal;
 
-/// What C has a pointer to: the beginning of a [`Held`] planner of one of two kinds.
+/// An opaque type of C. A pointer to it is a pointer to a [`Held`] planner of one of two kinds.
 pub(crate) trait Handle {
     type One: Asked;
     type Other: Asked;
 }
 
-/// A planner that can be asked, and that can sleep.
+/// A planner that can sleep.
 pub(crate) trait Asked: Planner + Persist<Snapshot: Serialize + DeserializeOwned> {}
 
 impl<P: Planner + Persist<Snapshot: Serialize + DeserializeOwned>> Asked for P {}
@@ -42,13 +42,14 @@ pub(crate) struct Held<P> {
     pub(crate) planner: P,
 }
 
-/// What a pointer leads to.
+/// A planner of one kind or of the other.
 pub(crate) enum Either<A, B> {
     One(A),
     Other(B),
 }
 
-/// Asks either planner the same. No table of methods: a program carries only those that it calls.
+/// Evaluates an expression for a planner of either kind. There is no table of methods, so the linker can drop methods that a
+/// program does not call.
 macro_rules! ask {
     ($either:expr, $planner:ident => $asked:expr) => {
         match $either {
@@ -59,17 +60,18 @@ macro_rules! ask {
 }
 pub(crate) use ask;
 
-/// The planner that a pointer leads to, to ask it.
+/// The planner behind a pointer, to read it.
 ///
 /// # Safety
-/// The pointer must be null or where a planner of this handle [was written](place), and nobody may change the planner meanwhile.
-pub(crate) unsafe fn seen<'a, H: Handle + 'a>(
+/// The pointer must be null, or it must point to a planner of this handle that was written to its [`place`]. Nobody may change
+/// that planner meanwhile.
+pub(crate) unsafe fn get<'a, H: Handle + 'a>(
     handle: *const H,
 ) -> Result<Either<&'a H::One, &'a H::Other>, Status> {
     if handle.is_null() {
         return Err(Status::Memory);
     }
-    // SAFETY: only with a planner of its kind is there a handle.
+    // SAFETY: a planner of its kind follows each kind in memory.
     unsafe {
         Ok(match *handle.cast::<Kind>() {
             Kind::One => Either::One(&(*handle.cast::<Held<H::One>>()).planner),
@@ -78,17 +80,17 @@ pub(crate) unsafe fn seen<'a, H: Handle + 'a>(
     }
 }
 
-/// The same, to change it.
+/// The planner behind a pointer, to change it.
 ///
 /// # Safety
-/// As for [`seen`], and nobody else may use the planner meanwhile.
-pub(crate) unsafe fn held<'a, H: Handle + 'a>(
+/// As for [`get`], and nobody else may use the planner meanwhile.
+pub(crate) unsafe fn get_mut<'a, H: Handle + 'a>(
     handle: *mut H,
 ) -> Result<Either<&'a mut H::One, &'a mut H::Other>, Status> {
     if handle.is_null() {
         return Err(Status::Memory);
     }
-    // SAFETY: as in `seen`.
+    // SAFETY: as in `get`.
     unsafe {
         Ok(match *handle.cast::<Kind>() {
             Kind::One => Either::One(&mut (*handle.cast::<Held<H::One>>()).planner),
@@ -108,7 +110,7 @@ pub(crate) fn place<P>((memory, bytes): (*mut c_void, usize)) -> Result<*mut Hel
 ///
 /// # Safety
 /// `given` must be null or readable for so many samples.
-pub(crate) unsafe fn told<'a, 'b>(
+pub(crate) unsafe fn inputs<'a, 'b>(
     mission: Option<&'a Mission<'b>>,
     (given, count): (*const Sample, usize),
 ) -> Result<(&'a Mission<'b>, &'a [Sample]), Refusal> {
@@ -127,7 +129,7 @@ pub(crate) unsafe fn told<'a, 'b>(
     Ok((mission, unsafe { core::slice::from_raw_parts(given, count) }))
 }
 
-/// Writes an answer into its place. Without one, and without a place for it, nothing is written.
+/// Writes an answer into its place. A call that is refused writes nothing.
 pub(crate) fn answer<T>(
     place: Option<&mut MaybeUninit<T>>,
     answer: impl FnOnce() -> Result<T, Status>,
@@ -145,10 +147,10 @@ pub(crate) fn answer<T>(
 /// The next motion.
 ///
 /// # Safety
-/// As for [`held`].
+/// As for [`get_mut`].
 pub(crate) unsafe fn plan<H: Handle>(handle: *mut H, pose: Pose) -> Result<Motion, Status> {
     // SAFETY: the caller promises it.
-    let planner = unsafe { held(handle) }?;
+    let planner = unsafe { get_mut(handle) }?;
     let pose = pose.read()?;
     match ask!(planner, it => it.plan(pose)) {
         Plan::Move(motion) => Ok(motion.into()),
@@ -159,7 +161,7 @@ pub(crate) unsafe fn plan<H: Handle>(handle: *mut H, pose: Pose) -> Result<Motio
 /// Takes in the end of a motion. The position may be off by a tolerance of its own.
 ///
 /// # Safety
-/// As for [`held`].
+/// As for [`get_mut`].
 pub(crate) unsafe fn observe<H: Handle>(
     handle: *mut H,
     pose: Pose,
@@ -167,7 +169,7 @@ pub(crate) unsafe fn observe<H: Handle>(
     within: Option<f64>,
 ) -> Result<(), Status> {
     // SAFETY: the caller promises it.
-    let planner = unsafe { held(handle) }?;
+    let planner = unsafe { get_mut(handle) }?;
     let (pose, reading) = (pose.read()?, Reading::read(reading)?);
     let within = within.map(Tolerance::new).transpose().map_err(|_| Status::Tolerance)?;
     Ok(ask!(planner, it => {
@@ -179,14 +181,14 @@ pub(crate) unsafe fn observe<H: Handle>(
 /// Takes in what was read on the way of a motion.
 ///
 /// # Safety
-/// As for [`held`].
+/// As for [`get_mut`].
 pub(crate) unsafe fn observe_on_the_way<H: Handle>(
     handle: *mut H,
     at: Point,
     reading: i32,
 ) -> Result<(), Status> {
     // SAFETY: the caller promises it.
-    let planner = unsafe { held(handle) }?;
+    let planner = unsafe { get_mut(handle) }?;
     let (site, reading) = (at.read()?, Reading::read(reading)?);
     if let Some(reading) = reading {
         ask!(planner, it => it.observe_on_the_way(site, reading))?;
@@ -197,10 +199,10 @@ pub(crate) unsafe fn observe_on_the_way<H: Handle>(
 /// The chance that a label at a place is +1.
 ///
 /// # Safety
-/// As for [`seen`].
+/// As for [`get`].
 pub(crate) unsafe fn chance<H: Handle>(handle: *const H, at: Point) -> Result<f64, Status> {
     // SAFETY: the caller promises it.
-    let planner = unsafe { seen(handle) }?;
+    let planner = unsafe { get(handle) }?;
     let site = at.read()?;
     Ok(ask!(planner, it => it.belief().chance(site)))
 }
@@ -209,18 +211,18 @@ pub(crate) unsafe fn chance<H: Handle>(handle: *const H, at: Point) -> Result<f6
 /// is written.
 ///
 /// # Safety
-/// As for [`seen`], and `bytes` must be null or writable for so many bytes.
+/// As for [`get`], and `bytes` must be null or writable for so many bytes.
 pub(crate) unsafe fn save<H: Handle>(
     handle: *const H,
     (bytes, room): (*mut u8, usize),
 ) -> Result<usize, Status> {
     // SAFETY: the caller promises it.
-    unsafe { ask!(seen(handle)?, it => write(it, (bytes, room))) }
+    unsafe { ask!(get(handle)?, it => write(it, (bytes, room))) }
 }
 
 /// # Safety
 /// As for [`save`].
-#[inline(never)] // a call takes the stack of one kind, not of both
+#[inline(never)] // a call needs the stack of one kind, not of both
 unsafe fn write<P: Asked>(planner: &P, (bytes, room): (*mut u8, usize)) -> Result<usize, Status> {
     let snapshot = planner.snapshot();
     let count = snapshot::size(&snapshot).filter(|it| *it <= room && !bytes.is_null());
@@ -236,8 +238,8 @@ unsafe fn write<P: Asked>(planner: &P, (bytes, room): (*mut u8, usize)) -> Resul
 /// Lets a planner go on from what was saved.
 ///
 /// # Safety
-/// As for [`held`].
+/// As for [`get_mut`].
 pub(crate) unsafe fn restore<H: Handle>(handle: *mut H, bytes: &[u8]) -> Result<(), Status> {
     // SAFETY: the caller promises it.
-    ask!(unsafe { held(handle) }?, it => snapshot::wake(bytes, it))
+    ask!(unsafe { get_mut(handle) }?, it => snapshot::wake(bytes, it))
 }

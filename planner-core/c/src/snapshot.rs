@@ -51,7 +51,7 @@ pub(crate) fn write(snapshot: &impl Serialize, bytes: &mut [u8]) -> Option<()> {
 }
 
 /// Lets a planner go on from what [`write`] wrote. One that does not is as it was.
-#[inline(never)] // a call takes the stack of one kind of planner, not of both
+#[inline(never)] // a call needs the stack of one kind of planner, not of both
 pub(crate) fn wake<P>(bytes: &[u8], planner: &mut P) -> Result<(), Status>
 where
     P: Persist<Snapshot: DeserializeOwned>,
@@ -66,12 +66,12 @@ where
     go_on(planner, &read)
 }
 
-#[inline(never)] // what it remembers is not on the stack while bytes are read
+#[inline(never)] // so the earlier state is not on the stack while bytes are read
 fn go_on<P: Persist>(planner: &mut P, from: &P::Snapshot) -> Result<(), Status> {
     let before = planner.snapshot();
     planner.restore(from).map_err(|refused| {
         if let RestoreError::Log(_) = refused {
-            // It has begun to replay. It made this one itself.
+            // The replay has begun. The planner made `before` itself, so it accepts it.
             let _ = planner.restore(&before);
         }
         refused.into()
