@@ -389,7 +389,8 @@ const STACKS: [(&str, &[&str], u32); 10] = [
 fn calls_take_the_stack_that_the_page_says() {
     let Some(library) = program::folder("planner-c", program::CHIP, "") else { return };
     let calls = STACKS.iter().flat_map(|(_, calls, _)| *calls);
-    let vectors: String = calls.map(|call| format!("LONG(planner_{call}) ")).collect();
+    let vectors: Vec<String> = calls.map(|call| format!("LONG(planner_{call})")).collect();
+    let vectors = vectors.join(" ");
     let script = format!(
         "SECTIONS {{ .vector_table 0 : {{ LONG(0) {vectors} }} .text : {{ *(.text*) }} .rodata : {{ *(.rodata*) }} \
          /DISCARD/ : {{ *(.ARM.ex*) }} }} abort = planner_has_ended;"
