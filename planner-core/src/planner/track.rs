@@ -144,7 +144,7 @@ impl<D: Dynamics, G: Workspace> Track<D, G> {
     /// [restarted](Restart::restart) where it stays before it plans. It may [end](Self::until_closed).
     #[inline]
     pub fn of(of: (G, D), front: Front, ends: bool) -> Self {
-        Self { ends, ..Self::blank(of, (front, 0.0)) }
+        Self::blank(of, (front, 0.0), ends)
     }
 
     /// The same, but it ends once the robot has gone along all of the front: it is [closed](Self::is_closed), or it has been
@@ -182,7 +182,7 @@ impl<D: Dynamics, G: Workspace> Guard<D, G> {
     /// As [`Track::of`].
     #[inline]
     pub fn guard_of(of: (G, D), front: Front, stretch: FrontStretch) -> Self {
-        Self::blank(of, (front, stretch.length()))
+        Self::blank(of, (front, stretch.length()), false)
     }
 
     /// The middle of the stretch, and its direction. `None` before the front is found.
@@ -207,10 +207,9 @@ impl<D: Dynamics, G: Workspace, const N: usize> Track<D, G, N> {
         Ok(track)
     }
 
-    /// One in the part of an area that motions [aim for](crate::aimed_for), which is
-    /// [restarted](Restart::restart) before it plans. A stretch of no length is not watched.
+    /// A stretch of no length is not watched.
     #[inline]
-    pub(crate) fn blank(of: (G, D), (front, stretch): (Front, f32), ends: bool) -> Self {
+    fn blank(of: (G, D), (front, stretch): (Front, f32), ends: bool) -> Self {
         Self {
             hunt: Hunt::of(of, Lines::blank()),
             front,

@@ -189,7 +189,7 @@ impl Setup {
         front: Front,
         ends: bool,
     ) -> Track<D, G> {
-        Track::blank((area, dynamics), (front, 0.0), ends)
+        Track::of((area, dynamics), front, ends)
     }
 
     /// The guard of a stretch of a front for this mission, with none of its samples yet: the memory for
@@ -200,7 +200,7 @@ impl Setup {
         front: Front,
         stretch: FrontStretch,
     ) -> Guard<D, G> {
-        Guard::blank((area, dynamics), (front, stretch.length()), false)
+        Guard::guard_of((area, dynamics), front, stretch)
     }
 
     /// Begins the mission in this memory, so that there is never a second planner beside it.
