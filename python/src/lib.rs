@@ -2,6 +2,7 @@
 //! JSON, in the words of scenario files and traces, and as arrays.
 
 #![forbid(unsafe_code)]
+#![expect(clippy::needless_pass_by_value, reason = "what comes from Python is owned")]
 
 mod lines;
 mod mission;

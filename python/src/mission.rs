@@ -1,7 +1,7 @@
 //! Missions: flown here, or motion by motion by whoever makes the motions.
 
 use std::path::Path;
-use std::sync::{Mutex, MutexGuard};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use host_sim::mission::next::{self, Conversation};
 use host_sim::mission::read_out::ReadOut;
@@ -70,7 +70,7 @@ impl Flight {
         Page::new(title, vec![chapter]).html()
     }
 
-    /// Track, samples and what was found, as GeoJSON; of an area from a map.
+    /// Track, samples and what was found, as `GeoJSON`; of an area from a map.
     fn geojson(&self) -> PyResult<String> {
         on_map::geojson(&self.recording).map_err(refused)
     }
@@ -108,7 +108,7 @@ pub(crate) struct Planner {
 impl Planner {
     fn now(&self) -> MutexGuard<'_, Conversation> {
         // What a thread that panicked has left is a conversation all the same.
-        self.conversation.lock().unwrap_or_else(|it| it.into_inner())
+        self.conversation.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -111,28 +111,27 @@ pub(crate) fn run(args: &RunArgs) -> Result<Done> {
 /// Where a file goes that a mission writes.
 type Place = fn(&Run) -> &Option<PathBuf>;
 
-/// What is in it; nothing if the mission has no such thing.
-type Make = fn(&Run, &Recording) -> Result<Option<Vec<u8>>>;
+/// What is in it.
+type Make = fn(&Run, &Recording) -> Result<Vec<u8>>;
 
 /// The files that a mission writes, each with its flag.
 const OUTPUTS: [(&str, Place, Make); 8] = [
-    ("--trace", |run| &run.trace, |_, it| text_file(trace::lines(&it.results))),
-    ("--figure", |run| &run.figure, |run, it| text_file(Picture::of(&run.title(), it).svg())),
+    ("--trace", |run| &run.trace, |_, it| Ok(trace::lines(&it.results).into())),
+    ("--figure", |run| &run.figure, |run, it| Ok(Picture::of(&run.title(), it).svg().into())),
     (
         "--candidates",
         |run| &run.candidates,
-        |run, it| Ok(Picture::of_candidates(&run.title(), it).map(|it| it.svg().into())),
+        |run, it| {
+            let fewest = Picture::of_candidates(&run.title(), it);
+            Ok(fewest.context("--candidates: found no hypotheses")?.svg().into())
+        },
     ),
-    ("--report", |run| &run.report, |run, it| text_file(page(&run.title(), &[it]))),
-    ("--mcap", |run| &run.mcap, |_, it| log::mcap(it).map(Some)),
-    ("--map", |run| &run.map, |_, it| text_file(Pieces::of(&it.results).csv("step", None, &[])?)),
-    ("--geojson", |run| &run.geojson, |_, it| text_file(on_map::geojson(it)?)),
-    ("--gpx", |run| &run.gpx, |run, it| text_file(on_map::gpx(&run.title(), it)?)),
+    ("--report", |run| &run.report, |run, it| Ok(page(&run.title(), &[it]).into())),
+    ("--mcap", |run| &run.mcap, |_, it| log::mcap(it)),
+    ("--map", |run| &run.map, |_, it| Ok(Pieces::of(&it.results).csv("step", None, &[])?.into())),
+    ("--geojson", |run| &run.geojson, |_, it| Ok(on_map::geojson(it)?.into())),
+    ("--gpx", |run| &run.gpx, |run, it| Ok(on_map::gpx(&run.title(), it)?.into())),
 ];
-
-fn text_file(text: String) -> Result<Option<Vec<u8>>> {
-    Ok(Some(text.into()))
-}
 
 /// A page of missions that were flown from the same start, under the scenario's name.
 fn page(scenario: &str, recordings: &[&Recording]) -> String {
@@ -247,9 +246,7 @@ impl Run {
         for (output, content) in
             made.map(|(it, made)| Ok((it, made?))).collect::<Result<Vec<_>>>()?
         {
-            if let Some(content) = content {
-                output.write(content)?;
-            }
+            output.write(content)?;
         }
         let (name, lines) = (self.name(), trace::lines(&recording.results));
         Ok(match self.format {

@@ -54,7 +54,7 @@ impl OnMap {
             track: way(track.collect())?,
             samples: given.chain(read).map(sample).collect::<Result<_>>()?,
             centre: chord.map(|it| way(it.into())).transpose()?,
-            front: Pieces::of(results).ways().into_iter().map(way).collect::<Result<_>>()?,
+            front: Pieces::of(results).ways().map(way).collect::<Result<_>>()?,
         })
     }
 }

@@ -30,7 +30,7 @@ struct Request {
     /// Where the robot is: `x`, `z` and `heading`, or `lat`, `lon` and `heading`; in the first request [default: `start`]
     pose: Option<Place>,
     /// What it read there, after a motion that wants a label: -1, 0 on the boundary, 1, or null if it could read none
-    label: Option<Option<i8>>,
+    label: Option<Value>,
     /// What it read on the way, in order, each with its place and its `label` [default: none]
     on_the_way: Vec<Place>,
     /// In the first request: labels of others, each with its place. They may be wrong where labels may; those of `oracle` may not [default: none]
@@ -182,7 +182,8 @@ impl Conversation {
     pub fn begin(request: &str, scenario: Option<(&str, &str, &Path)>) -> Result<Self> {
         let mut keys = keys(request)?;
         let request = Request::taken(&mut keys).context(NAME)?;
-        let (is_first, pose, label) = (request.state.is_none(), request.pose, request.label);
+        let (is_first, pose) = (request.state.is_none(), request.pose);
+        let label = request.label.clone();
         let on_the_way = request.on_the_way.clone();
         let mut begun = Self::open(request, keys, scenario)?;
         if !is_first {
@@ -217,7 +218,7 @@ impl Conversation {
         let overrides = Overrides { set: &set, ..Overrides::default() };
         let mission = scenario::parse_real(name, text, folder, overrides)?;
         let mut table: toml::Table = toml::from_str(&setting::put(&set, text)?)?;
-        FREE.iter().for_each(|key| drop(table.remove(*key)));
+        table.retain(|key, _| !FREE.contains(&key));
         Self::made(request, mission, toml::to_string(&table)?).context(NAME)
     }
 
@@ -262,18 +263,18 @@ impl Conversation {
     fn take(
         &mut self,
         pose: Option<Place>,
-        label: Option<Option<i8>>,
+        label: Option<Value>,
         on_the_way: &[Place],
     ) -> Result<()> {
         let lake = self.session.mission().lake.clone();
         let Some(pose) = pose else {
             return wrong("pose", "none", "where the last motion ended");
         };
-        if label.is_none() && self.session.next().is_ok_and(|it| it.wants_label) {
+        if label.is_none() && self.session.plan().is_ok_and(|it| it.wants_label) {
             let expected = "-1 or 1, as the motion asked for one; null if none could be read";
             return wrong("label", "none", expected);
         }
-        let label = label.flatten();
+        let label: Option<i8> = of_json("label", label.unwrap_or_default())?;
         label.map(|it| reading("label", it)).transpose()?;
         let on_the_way = told("on_the_way", on_the_way, lake.as_deref())?;
         let [x, z] = pose.at("pose", lake.as_deref())?;
@@ -289,7 +290,7 @@ impl Conversation {
     /// # Errors
     /// None that is known: when the answer cannot be written as JSON.
     pub fn answer(&mut self) -> Result<String> {
-        let next = self.session.next();
+        let next = self.session.plan();
         let Self { session, state, scenario } = self;
         state.check = state.sum(scenario);
         let (mission, belief) = (session.mission(), session.belief());
@@ -348,7 +349,7 @@ fn toml(value: Value) -> Option<toml::Value> {
         Value::Array(all) => all.into_iter().filter_map(toml).collect::<Vec<_>>().into(),
         Value::Object(all) => {
             let entry = |(key, value)| Some((key, toml(value)?));
-            toml::Table::from_iter(all.into_iter().filter_map(entry)).into()
+            all.into_iter().filter_map(entry).collect::<toml::Table>().into()
         }
     })
 }
@@ -367,7 +368,7 @@ impl Request {
     fn taken(keys: &mut Map<String, Value>) -> Result<Self> {
         Ok(Self {
             pose: take(keys, "pose")?,
-            label: keys.remove("label").map(|it| of_json("label", it)).transpose()?,
+            label: keys.remove("label"),
             on_the_way: take(keys, "on_the_way")?.unwrap_or_default(),
             samples: take(keys, "samples")?.unwrap_or_default(),
             state: take(keys, "state")?,

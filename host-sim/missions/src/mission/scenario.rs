@@ -7,8 +7,8 @@ use anyhow::{Context as _, Error, Result, anyhow};
 use nalgebra::Point2;
 use planner_core::link::message::{MissionArea, Settings};
 use planner_core::{
-    AnyReliability, AnyVehicle, EffortWeight, Following, Heading, Label, Noise, Pose, Reliability,
-    Site, Tolerance, UnknownReliability, Workspace as _,
+    AnyReliability, AnyVehicle, EffortWeight, Following, Goal, Heading, Label, Noise, Pose,
+    Reliability, Site, Tolerance, UnknownReliability, Workspace as _,
 };
 use serde::Deserialize;
 
@@ -405,6 +405,19 @@ impl File {
         })
     }
 
+    /// The goal of a line, and whether a front is to be gone round.
+    ///
+    /// # Errors
+    /// Names the field, what was found and what was expected.
+    fn end(&self, algorithm: Algorithm) -> Result<(Option<Goal>, bool)> {
+        let stop = self.stop.as_ref().map(|table| &table.0);
+        Ok(if algorithm.seeks_line() {
+            (stop.map(|it| it.goal(algorithm, self.noise.is_some())).transpose()?, false)
+        } else {
+            (None, stop.map_or(Ok(true), StopTable::until_closed)?)
+        })
+    }
+
     /// Whether an audit comes before a goal's promise.
     fn audits(&self) -> bool {
         self.stop.as_ref().is_some_and(|table| table.0.audits())
@@ -534,12 +547,7 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<M
     let following = file.following.map_or(algorithm.following(), Following::from);
     let config = Settings { area, weight, crossing: file.crossing.into(), following, tolerance };
     vehicle::check_room(Source::File, &vehicle, &config)?;
-    let stop = file.stop.as_ref().map(|table| &table.0);
-    let (goal, until_closed) = if algorithm.seeks_line() {
-        (stop.map(|it| it.goal(algorithm, noise.is_some())).transpose()?, false)
-    } else {
-        (None, stop.map_or(Ok(true), StopTable::until_closed)?)
-    };
+    let (goal, until_closed) = file.end(algorithm)?;
     let mission = Mission {
         lake,
         algorithm,

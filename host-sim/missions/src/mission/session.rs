@@ -58,7 +58,7 @@ impl Session {
     ///
     /// # Errors
     /// Why the mission has ended.
-    pub fn next(&mut self) -> Result<Motion, Ending> {
+    pub fn plan(&mut self) -> Result<Motion, Ending> {
         if let Some(next) = self.next {
             return next;
         }
@@ -81,7 +81,7 @@ impl Session {
     /// When the mission has ended, or what was read contradicts what is known. It is not to be gone on with then.
     pub fn arrive(&mut self, arrival: &Arrival) -> Result<()> {
         let Arrival { pose, reading, ref passed } = *arrival;
-        let motion = self.next().map_err(|why| {
+        let motion = self.plan().map_err(|why| {
             anyhow!("found a motion after the end, expected none: {}", why.name())
         })?;
         self.next = None;
