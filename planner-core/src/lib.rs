@@ -159,7 +159,9 @@ pub use crate::belief::doubtful_labels::{PosteriorView, ReliabilityEstimate};
 pub use crate::belief::estimate::Estimates;
 pub use crate::belief::field::{Left, Likely, Seeking};
 pub use crate::belief::front::{Beside, Front, FrontStretch, Waist};
-pub use crate::belief::goal::{Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin};
+pub use crate::belief::goal::{
+    Accuracy, Criterion, Goal, NoGoal, ShareWithin, SlopeWithin, Unaudited,
+};
 pub use crate::belief::lines::{Lines, LinesMemory};
 pub use crate::belief::noise::Noise;
 pub use crate::belief::observation_log::{FromLog, ObservationLog};

@@ -79,6 +79,13 @@ impl<C: Criterion> Goal<C> {
         is_one.then_some(Self { level, ..self }).ok_or(CONFIDENCE)
     }
 
+    /// The same goal, met without an [audit](crate::watch::Audit) before its promise: a program for a small chip then has no
+    /// code of one.
+    #[must_use]
+    pub fn unaudited(self) -> Goal<Unaudited<C>> {
+        Goal { accuracy: Unaudited(self.accuracy), level: self.level }
+    }
+
     /// The same goal, as a share of the rectangle around an area. [`Belief::meets`](crate::belief::Belief::meets) takes
     /// that rectangle, of which the same ground is a smaller share.
     #[must_use]
@@ -105,6 +112,9 @@ const CONFIDENCE: ValueError = ValueError("a confidence is above 0 and at most 0
 
 /// What can be asked of lines. A type of its own for each, so that a program carries the code of no other.
 pub trait Criterion: Copy {
+    /// Whether an audit comes before the promise that it is met.
+    const AUDITS: bool = true;
+
     /// The one of both that is this.
     fn of(accuracy: Accuracy) -> Option<Self>;
 
@@ -127,7 +137,34 @@ pub trait Criterion: Copy {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum NoGoal {}
 
+/// A criterion that is met without an audit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Unaudited<C>(pub C);
+
+impl<C: Criterion> Criterion for Unaudited<C> {
+    const AUDITS: bool = false;
+
+    fn of(accuracy: Accuracy) -> Option<Self> {
+        C::of(accuracy).map(Self)
+    }
+
+    fn is_met<B: Bounds>(self, bounds: &B, area: Area) -> bool {
+        self.0.is_met(bounds, area)
+    }
+
+    fn deviation(self, chord: f32, area: Area) -> f32 {
+        self.0.deviation(chord, area)
+    }
+
+    fn in_bounds_of<G: Workspace>(self, area: &G) -> Self {
+        Self(self.0.in_bounds_of(area))
+    }
+}
+
 impl Criterion for NoGoal {
+    const AUDITS: bool = false;
+
     fn of(_: Accuracy) -> Option<Self> {
         None
     }

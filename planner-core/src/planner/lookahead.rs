@@ -238,7 +238,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     }
 
     /// The same, but it stops as soon as the belief meets the goal. It then says `Known` also of a boundary that bends or
-    /// moves.
+    /// moves. [`Goal::unaudited`] does the same by type, and leaves the audit's code out of a program.
     #[must_use]
     #[inline]
     pub fn without_audit(self) -> Self {
@@ -291,7 +291,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     /// A label and how likely it is, if a promise depends on what speaks against the model.
     fn heard(&self, site: Site, reading: Option<Reading>) -> Option<(Sample, f32)> {
         let Some(Reading::Side(label)) = reading else { return None };
-        let promises = B::Verdicts::HEARS && self.goal.is_some() && self.audit.is_some();
+        let promises =
+            B::Verdicts::HEARS && C::AUDITS && self.goal.is_some() && self.audit.is_some();
         promises.then(|| (Sample { site, label }, self.belief().chance_of(site, label)))
     }
 
@@ -323,7 +324,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     /// What to do when the goal is met: the audit's next motion, or what it came to.
     fn conclude(&mut self, pose: Pose) -> Plan {
         let known = Plan::Stop(StopReason::Known);
-        let Some(audit) = self.audit.as_mut() else { return known };
+        let Some(audit) = self.audit.as_mut().filter(|_| C::AUDITS) else { return known };
         let Some(estimate) = self.belief.belief().centre() else { return known };
         self.belief.prepare();
         let (dynamics, mut effort) = (&self.dynamics, Effort::within(&self.area, LOOKS));
@@ -416,7 +417,7 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
 
     fn plan(&mut self, pose: Pose) -> Plan {
         if let Some(goal) = self.goal {
-            if self.audit.is_some_and(|audit| audit.refuted().is_some()) {
+            if C::AUDITS && self.audit.is_some_and(|audit| audit.refuted().is_some()) {
                 return Plan::Stop(StopReason::NoLine);
             }
             if self.belief().meets(goal, self.bounds) {
@@ -445,7 +446,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight> Pla
         tolerance: Tolerance,
     ) -> Result<(), ObservationError> {
         let heard = self.heard(pose.site, reading);
-        let mut audit = self.goal.and_then(|goal| Some((self.audit.as_mut()?, goal.level)));
+        let goal = self.goal.filter(|_| C::AUDITS);
+        let mut audit = goal.and_then(|goal| Some((self.audit.as_mut()?, goal.level)));
         let is_audited = tolerance <= self.belief.belief().tolerance()
             && audit.as_ref().is_some_and(|(audit, _)| audit.arrives());
         let seen = reading.filter(|_| is_audited).and_then(|reading| {
@@ -713,7 +715,7 @@ mod tests {
             full.observe(motion.target, Some(label.into())).unwrap();
             stops(full.plan(start), StopReason::SamplesFull);
             // What is known is known also where there is no more room, and outside.
-            stops(full.until(arc(89.0)).without_audit().plan(outside), StopReason::Known);
+            stops(full.until(arc(89.0).unaudited()).plan(outside), StopReason::Known);
             stops(field.doubtful().until(arc(89.0)).without_audit().plan(start), StopReason::Known);
             let few = |it: Plan| assert!(matches!(it, Plan::Move(_)));
             few(field.true_labels::<64>().until(arc(5.0)).plan(start));
