@@ -115,7 +115,7 @@ Instructions are exact, milliseconds an estimate by the manual's table, flash is
 pub(crate) const REFERENCE: &str = "\
 Examples:
   host-sim reference mission.toml --horizon 2
-  host-sim reference mission.toml --horizon 5 --speed-step 0.5 --turn-step 0.25";
+  host-sim reference mission.toml --horizon 5 --set vehicle.step=0.5 --set vehicle.turn_step=0.25";
 
 pub(crate) const INIT: &str = "\
 Examples:

@@ -9,7 +9,6 @@ use crate::cli::format::Format;
 use crate::cli::help;
 use crate::mission::scenario::{self, Overrides};
 use crate::mission::setting::Setting;
-use crate::mission::vehicle::with_steps;
 use crate::output::file::{json, prepare};
 use crate::output::plain;
 use crate::reference::instance::Instance;
@@ -29,12 +28,6 @@ pub(crate) struct ReferenceArgs {
     /// What a line costs, where labels are true [default: slope]
     #[arg(long, value_enum, value_name = "COST")]
     pub(crate) line: Option<LineCost>,
-    /// The step between lengths of motions, metres [default: the vehicle's]
-    #[arg(long, value_name = "METRES")]
-    pub(crate) speed_step: Option<f64>,
-    /// The step between directions, radians [default: the vehicle's]
-    #[arg(long, value_name = "RADIANS")]
-    pub(crate) turn_step: Option<f64>,
     /// Any key of the scenario, as noise.p=0.9; as often as there are keys
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<Setting>,
@@ -49,13 +42,9 @@ pub(crate) struct ReferenceArgs {
 /// Solves it, and what to print.
 pub(crate) fn reference(args: &ReferenceArgs) -> Result<String> {
     let name = plain::name(&args.scenario.display().to_string());
-    let mut mission =
+    let mission =
         scenario::read(&args.scenario, Overrides { set: &args.set, ..Overrides::default() })?;
     mission.warn(&name);
-    if args.speed_step.is_some() || args.turn_step.is_some() {
-        mission.vehicle =
-            with_steps(mission.vehicle, args.speed_step, args.turn_step, mission.algorithm)?;
-    }
     let [figure] =
         prepare(&[("the scenario", &args.scenario)], [("--figure", args.figure.as_deref())])?;
     let solution = Instance::new(mission, args.horizon, args.line)

@@ -84,7 +84,7 @@ pub fn geojson(recording: &Recording) -> Result<String> {
 /// The same as GPX 1.1, of a mission with this title: tracks, and a waypoint for each sample.
 ///
 /// # Errors
-/// As [`geojson`].
+/// As [`geojson`](fn@geojson).
 pub fn gpx(title: &str, recording: &Recording) -> Result<String> {
     let OnMap { track, samples, centre, front } = OnMap::of(recording)?;
     let point = |[lon, lat]: Degrees| Waypoint::new((lon, lat).into());

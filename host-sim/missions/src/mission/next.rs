@@ -99,6 +99,9 @@ struct Answer<'a> {
     end: Option<&'a End>,
     /// For the next request.
     state: &'a State,
+    /// Of an area from a map: the place, in the map's coordinates, from which the metres of `known`, `step` and `end` are counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    origin: Option<[f64; 2]>,
 }
 
 /// A motion: where it ends, and how to come there.
@@ -310,6 +313,7 @@ impl Conversation {
             step: session.last(),
             end: end.as_ref(),
             state,
+            origin: mission.lake.as_ref().and_then(|it| it.frame.origin),
         };
         Ok(serde_json::to_string(&answer)? + "\n")
     }

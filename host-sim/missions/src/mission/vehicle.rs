@@ -40,8 +40,15 @@ pub enum Kind {
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, clap::Args)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleTable {
-    /// What moves
-    #[arg(long = "vehicle", value_enum, value_name = "KIND", default_value_t)]
+    /// What moves [default: unicycle]
+    #[arg(
+        long = "vehicle",
+        value_enum,
+        value_name = "KIND",
+        default_value_t,
+        hide_default_value = true
+    )]
+    #[serde(default)]
     pub(crate) kind: Kind,
     /// The longest motion, metres, below 3000 [default: 2]
     #[arg(long, value_name = "METRES")]
@@ -244,22 +251,6 @@ impl From<AnyVehicle> for VehicleTable {
             shortest: car.map(|shape| metres(shape.shortest_mm)),
         }
     }
-}
-
-/// The same vehicle with other steps of speed (metres) and of turning (radians), which flags ask for.
-///
-/// # Errors
-/// Names the flag, what was found and what was expected.
-pub fn with_steps(
-    vehicle: AnyVehicle,
-    speed_step: Option<f64>,
-    turn_step: Option<f64>,
-    algorithm: Algorithm,
-) -> Result<AnyVehicle> {
-    let old = VehicleTable::from(vehicle);
-    let (step, turn_step) = (speed_step.or(old.step), turn_step.or(old.turn_step));
-    let table = VehicleTable { step, turn_step, ..old };
-    table.vehicle(Source::Flags, algorithm, false, FanName::Paper)
 }
 
 /// Refuses a vehicle that the algorithm cannot drive. Chords, margin sampling, the random walk and the lawnmower drive no

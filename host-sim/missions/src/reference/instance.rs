@@ -173,7 +173,7 @@ fn choices(mission: &Mission) -> Result<Vec<Choice>> {
     let count = vehicle.grid().actions();
     if count > MOST_ACTIONS {
         bail!(
-            "vehicle: found {count} actions, expected at most {MOST_ACTIONS}: fan = \"paper\", or a larger --turn-step"
+            "vehicle: found {count} actions, expected at most {MOST_ACTIONS}: fan = \"paper\", or a larger vehicle.turn_step"
         );
     }
     let all = (0..count as u32).map(Action).filter(|it| vehicle.ray_of(start, *it).is_some());

@@ -102,7 +102,7 @@ impl<'a> Search<'a> {
         if self.is_too_long() {
             bail!(
                 "--horizon: found {}, and no end after a look at {:.0e} motions, expected a shorter one or fewer \
-                 actions (--speed-step, --turn-step)",
+                 actions (vehicle.step, vehicle.turn_step)",
                 self.instance.horizon(),
                 MOST_LOOKS as f64
             );

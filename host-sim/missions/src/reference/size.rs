@@ -28,7 +28,7 @@ pub(super) fn check(instance: &Instance, search: &Search<'_>, root: &Branch) -> 
     let possible = possible.map_or("none".to_owned(), |horizon| format!("{horizon} at most"));
     bail!(
         "--horizon: found {} motions of {} actions each, which takes a look at some {looks:.0e} motions where {:.0e} are \
-         possible, expected {possible}, or fewer actions (--speed-step, --turn-step)",
+         possible, expected {possible}, or fewer actions (vehicle.step, vehicle.turn_step)",
         instance.horizon(),
         instance.choices.len(),
         MOST_LOOKS as f64,
