@@ -41,13 +41,7 @@ pub enum Kind {
 #[serde(deny_unknown_fields)]
 pub struct VehicleTable {
     /// What moves [default: unicycle]
-    #[arg(
-        long = "vehicle",
-        value_enum,
-        value_name = "KIND",
-        default_value_t,
-        hide_default_value = true
-    )]
+    #[arg(long = "vehicle", value_enum, default_value_t, hide_default_value = true)]
     #[serde(default)]
     pub(crate) kind: Kind,
     /// The longest motion, metres, below 3000 [default: 2]
