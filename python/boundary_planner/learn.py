@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from numbers import Real
+from operator import index
 from typing import Any
 
 import numpy as np
@@ -47,37 +49,50 @@ class LineClassifier(ClassifierMixin, BaseEstimator):
 
     def fit(self, X: ArrayLike, y: ArrayLike) -> LineClassifier:
         """Weigh all lines by these labels."""
-        X, y = validate_data(self, X, y, dtype=np.float64)
-        check_classification_targets(y)
-        kind = type_of_target(y, input_name="y", raise_unknown=True)
-        self.classes_, numbers = np.unique(y, return_inverse=True)
+        places, labels = validate_data(self, X, y, dtype=np.float64)
+        check_classification_targets(labels)
+        kind = type_of_target(labels, input_name="y", raise_unknown=True)
+        self.classes_, numbers = np.unique(labels, return_inverse=True)
         if kind != "binary":
             raise ValueError(f"Only binary classification is supported. The type of the target is {kind}.")
         if len(self.classes_) < 2:
             raise ValueError(f"y: found one class, {self.classes_[0]!r}, expected two classes")
-        if not 0.5 < self.p <= 1.0:
-            raise ValueError(f"p: found {self.p}, expected a probability above 0.5, 1 at most")
-        self._lines = _native.Lines(
-            self._places(X), numbers == 1, min(float(self.p), CERTAIN), float(self.tolerance)
-        )
+        if not (isinstance(self.p, Real) and 0.5 < self.p <= 1.0):
+            raise ValueError(f"p: found {self.p!r}, expected a probability above 0.5, 1 at most")
+        if not (isinstance(self.tolerance, Real) and 0.0 <= self.tolerance < np.inf):
+            raise ValueError(f"tolerance: found {self.tolerance!r}, expected a finite number, 0 or more")
+        seen, is_second = self._places(places), numbers == 1
+        self._seen = (seen, is_second)
+        self._lines = self._weigh(seen, is_second)
+        if self.p == 1.0 and self.tolerance == 0.0:
+            # A line that does not separate the labels has one of them at least on its wrong side.
+            if np.abs(is_second - self._lines.chance(seen)).sum() > 0.5:
+                raise ValueError("y: no straight line separates the labels, and with p=1 none may be wrong")
         a, b, c = self._lines.mean()
-        self.coef_ = np.zeros((1, X.shape[1]))
+        self.coef_ = np.zeros((1, places.shape[1]))
         self.coef_[0, list(self.columns)] = [a, b]
         self.intercept_ = np.array([c])
-        self._seen = (self._places(X), numbers == 1)
         return self
 
+    def _weigh(self, places: NDArray[np.float64], is_second: NDArray[np.bool_]) -> _native.Lines:
+        return _native.Lines(places, is_second, min(float(self.p), CERTAIN), float(self.tolerance))
+
     def _places(self, X: NDArray[np.float64]) -> NDArray[np.float64]:
-        first, second = self.columns
+        try:
+            first, second = map(index, self.columns)
+        except (TypeError, ValueError):
+            first = second = 0
+        if first == second:
+            raise ValueError(f"columns: found {self.columns!r}, expected two numbers of columns, as (0, 1)")
         if not (0 <= first < X.shape[1] and 0 <= second < X.shape[1]):
-            found = f"{X.shape[1]} feature(s)"
-            raise ValueError(f"X: found {found}, minimum of {max(self.columns) + 1} is required: columns={self.columns}")
+            found, least = f"{X.shape[1]} feature(s)", max(first, second) + 1
+            raise ValueError(f"X: found {found}, minimum of {least} is required: columns={self.columns}")
         return np.ascontiguousarray(X[:, [first, second]])
 
     def _chance(self, X: ArrayLike) -> NDArray[np.float64]:
         check_is_fitted(self)
-        X = validate_data(self, X, dtype=np.float64, reset=False)
-        return self._lines.chance(self._places(X))
+        places = validate_data(self, X, dtype=np.float64, reset=False)
+        return self._lines.chance(self._places(places))
 
     def predict_proba(self, X: ArrayLike) -> NDArray[np.float64]:
         """The chance of each label at each place, as the sensor reads it: errors of labels included."""
@@ -87,12 +102,14 @@ class LineClassifier(ClassifierMixin, BaseEstimator):
     def decision_function(self, X: ArrayLike) -> NDArray[np.float64]:
         """The log odds that each place is on the side of `classes_[1]`."""
         chance = np.clip(self._chance(X), 1e-15, 1.0 - 1e-15)
-        return np.log(chance) - np.log1p(-chance)
+        odds: NDArray[np.float64] = np.log(chance) - np.log1p(-chance)
+        return odds
 
     def predict(self, X: ArrayLike) -> NDArray[Any]:
         """The likelier side of each place."""
         is_second = self._chance(X) > 0.5
-        return self.classes_[is_second.astype(int)]
+        classes: NDArray[Any] = self.classes_
+        return classes[is_second.astype(int)]
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(super().__getstate__())
@@ -102,8 +119,7 @@ class LineClassifier(ClassifierMixin, BaseEstimator):
     def __setstate__(self, state: dict[str, Any]) -> None:
         super().__setstate__(state)
         if "_seen" in state:
-            p = min(float(self.p), CERTAIN)
-            self._lines = _native.Lines(*self._seen, p, float(self.tolerance))
+            self._lines = self._weigh(*self._seen)
 
     def __sklearn_tags__(self) -> Any:
         tags = super().__sklearn_tags__()

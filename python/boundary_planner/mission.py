@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from boundary_planner import _native
 from boundary_planner.planner import Planner
-
-Told = tuple[str, tuple[str, str, str] | None]
+from boundary_planner.values import read_file, to_json, to_places
 
 
 class Mission:
@@ -26,26 +25,22 @@ class Mission:
 
     def __init__(self, path: str | Path | None = None, /, **keys: Any) -> None:
         self.keys = keys
-        self._file: tuple[str, str, str] | None = None
-        if path is not None:
-            path = Path(path)
-            self._file = (str(path), path.read_text(encoding="utf-8"), str(path.parent))
+        self._file = read_file(path)
 
     @property
     def name(self) -> str:
         """What figures are called."""
         return Path(self._file[0]).stem if self._file else "mission"
 
-    def _told(self) -> Told:
-        return json.dumps(self.keys, default=_plain), self._file
-
     def run(self) -> Flight:
         """Fly it in the simulated world. Other Python threads go on meanwhile."""
-        return Flight(self, _native.run(self._told()))
+        return Flight(self, _native.run((to_json(self.keys), self._file)))
 
     def planner(self, **keys: Any) -> Planner:
-        """A planner for a robot that somebody else moves; `keys` as `Planner` has them."""
-        return Planner(self._file, **{**self.keys, **keys})
+        """A planner for a robot that somebody else moves; `keys` take the place of the mission's."""
+        planner = Planner.__new__(Planner)
+        planner._begin((to_json({**self.keys, **keys}), self._file))
+        return planner
 
     def __repr__(self) -> str:
         keys = ", ".join(f"{key}={value!r}" for key, value in self.keys.items())
@@ -91,7 +86,8 @@ class Flight:
     @property
     def estimate(self) -> dict[str, Any] | None:
         """The recommended line: `slope`, `intercept`, and `angle` in degrees."""
-        return self.end["estimates"].get("centre")
+        estimate: dict[str, Any] | None = self.end["estimates"]["centre"]
+        return estimate
 
     @property
     def track(self) -> NDArray[np.float64]:
@@ -113,17 +109,24 @@ class Flight:
 
     @property
     def front(self) -> NDArray[np.float64]:
-        """The map of a front: rows of x, z and the half-width that holds 90 %, metres."""
-        places = [*(it for step in self.steps for it in step.get("mapped", ())), *self.end.get("mapped", ())]
-        return np.array([[it["x"], it["z"], it["half_width"]] for it in places]).reshape(-1, 3)
+        """The map of a front: rows of x, z, the half-width that holds 90 %, and the number of the piece; metres."""
+        rows: list[list[float]] = []
+        piece = 0
+        for record in [*self.steps, self.end]:
+            for place in record.get("mapped", ()):
+                piece += place.get("begins", False)
+                at = place["vertex"]
+                rows.append([at["x"], at["z"], at["half_width"], piece])
+        return np.array(rows, dtype=float).reshape(-1, 4)
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
         """The chance that the robot's sensor reads +1 at each place, by what is known in the end."""
-        return self._native.chance(_places(places))
+        return self._native.chance(to_places(places))
 
     def geojson(self) -> dict[str, Any]:
         """Track, samples and what was found, for a map; of an area from a map."""
-        return json.loads(self._native.geojson())
+        features: dict[str, Any] = json.loads(self._native.geojson())
+        return features
 
     def svg(self) -> str:
         """A figure. Notebooks show it."""
@@ -138,19 +141,3 @@ class Flight:
 
     def __repr__(self) -> str:
         return f"<Flight of {self.mission.name}: {len(self.steps)} steps, {self.end['reason']}>"
-
-
-def _places(places: ArrayLike) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(places, dtype=np.float64)
-    if array.ndim != 2 or array.shape[1] != 2:
-        raise _native.BoundaryError(f"places: found an array of shape {array.shape}, expected rows of x and z")
-    return array
-
-
-def _plain(value: Any) -> Any:
-    """Arrays and numbers of numpy, as JSON has them."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
-    if isinstance(value, Path):
-        return str(value)
-    raise TypeError(f"found {type(value).__name__}, expected what JSON has: {value!r}")

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from boundary_planner import _native
+from boundary_planner.values import Told, read_file, to_json, to_places
 
 
 @dataclass(frozen=True)
@@ -40,15 +42,16 @@ class Planner:
     ...     planner.observe(pose, read_label() if motion.wants_label else None)
     >>> planner.stop, planner.estimate
 
-    The keys are those of a scenario. `pose` is where the robot begins, and `samples` are labels of others that may be
+    The keys are those of a scenario, and they complete a TOML file if one is given. `pose` is where the robot begins, and `samples` are labels of others that may be
     wrong. A planner can be pickled: it goes on where it was.
     """
 
-    def __init__(self, file: tuple[str, str, str] | None = None, /, **keys: Any) -> None:
-        from boundary_planner.mission import _plain
+    def __init__(self, path: str | Path | None = None, /, **keys: Any) -> None:
+        self._begin((to_json(keys), read_file(path)))
 
-        self._begun = (json.dumps(keys, default=_plain), file)
-        self._native = _native.Planner(self._begun)
+    def _begin(self, begun: Told) -> None:
+        self._begun = begun
+        self._native = _native.Planner(begun)
         self._ask()
 
     def _ask(self) -> None:
@@ -66,20 +69,25 @@ class Planner:
     def observe(
         self,
         pose: Mapping[str, float],
-        label: int | None,
+        label: int | bool | None,
         on_the_way: Iterable[Mapping[str, float]] = (),
     ) -> None:
         """Take in where the motion ended, and the label there: -1, 0 on the boundary, 1, or None if none was read.
 
+        `pose` has the keys of `Motion.pose`. A label may be a bool: False is -1. `on_the_way` has what the sensor read
+        before the end, as {"x": ..., "z": ..., "label": ...}.
+
         A label that contradicts what is known is a `BoundaryError`, and the planner stays as it was.
         """
-        arrival = {
-            "pose": {key: float(value) for key, value in pose.items()},
-            "label": None if label is None else int(label),
-            "on_the_way": [dict(it) for it in on_the_way],
-        }
+        if not isinstance(pose, Mapping) or "heading" not in pose:
+            raise _native.BoundaryError(f"pose: found {pose!r}, expected a table, with x, z (or lat, lon) and heading")
+        if isinstance(label, (bool, np.bool_)):
+            label = 1 if label else -1
+        elif isinstance(label, (float, np.floating)) and label.is_integer():
+            label = int(label)
+        arrival = to_json({"pose": pose, "label": label, "on_the_way": list(on_the_way)})
         try:
-            self._native.arrive(json.dumps(arrival))
+            self._native.arrive(arrival)
         except _native.BoundaryError:
             self.__setstate__(self.__getstate__())
             raise
@@ -88,17 +96,20 @@ class Planner:
     @property
     def stop(self) -> str | None:
         """Why the mission has ended, as in the trace; None before."""
-        return self._answer["stop"]
+        stop: str | None = self._answer["stop"]
+        return stop
 
     @property
     def estimate(self) -> dict[str, Any] | None:
         """The recommended line: `slope`, `intercept`, and `angle` in degrees."""
-        return self._answer["known"]["estimates"].get("centre")
+        estimate: dict[str, Any] | None = self.known["estimates"]["centre"]
+        return estimate
 
     @property
     def known(self) -> dict[str, Any]:
         """What is known: `bits`, `slope_arcs`, `intercept`, `estimates`."""
-        return self._answer["known"]
+        known: dict[str, Any] = self._answer["known"]
+        return known
 
     @property
     def answer(self) -> dict[str, Any]:
@@ -107,9 +118,10 @@ class Planner:
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
         """The chance that the robot's sensor reads +1 at each place, by what is known now."""
-        from boundary_planner.mission import _places
+        return self._native.chance(to_places(places))
 
-        return self._native.chance(_places(places))
+    def __repr__(self) -> str:
+        return f"<Planner: {self.stop or self.plan()}>"
 
     def __getstate__(self) -> dict[str, Any]:
         return {"begun": self._begun, "state": self._answer["state"]}
