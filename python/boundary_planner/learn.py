@@ -40,6 +40,10 @@ class LineClassifier(ClassifierMixin, BaseEstimator):
     n_features_in_, feature_names_in_ : as of any estimator
     """
 
+    _seen: tuple[NDArray[np.float64], NDArray[np.bool_]]
+    _lines: _native.Lines
+    classes_: NDArray[Any]
+
     def __init__(
         self, p: float = 0.9, tolerance: float = 0.0, columns: Sequence[int] = (0, 1)
     ) -> None:
@@ -108,8 +112,8 @@ class LineClassifier(ClassifierMixin, BaseEstimator):
     def predict(self, X: ArrayLike) -> NDArray[Any]:
         """The likelier side of each place."""
         is_second = self._chance(X) > 0.5
-        classes: NDArray[Any] = self.classes_
-        return classes[is_second.astype(int)]
+        likelier: NDArray[Any] = self.classes_[is_second.astype(int)]
+        return likelier
 
     def __getstate__(self) -> dict[str, Any]:
         state = dict(super().__getstate__())

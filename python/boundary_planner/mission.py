@@ -85,7 +85,7 @@ class Flight:
 
     @property
     def estimate(self) -> dict[str, Any] | None:
-        """The recommended line: `slope`, `intercept`, and `angle` in degrees."""
+        """The recommended line: `slope`, `intercept`, and `angle` in degrees; None of a front, which `front` has."""
         estimate: dict[str, Any] | None = self.end["estimates"]["centre"]
         return estimate
 
@@ -120,7 +120,11 @@ class Flight:
         return np.array(rows, dtype=float).reshape(-1, 4)
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
-        """The chance that the robot's sensor reads +1 at each place, by what is known in the end."""
+        """The chance that the robot's sensor reads +1 at each place, by what is known in the end.
+
+        Places are rows of x and z, metres: in an area from a map to the east and the north of the middle of its bounds.
+        Of a front that was followed the answer is good beside the robot alone; `front` has the map.
+        """
         return self._native.chance(to_places(places))
 
     def geojson(self) -> dict[str, Any]:

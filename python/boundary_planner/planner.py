@@ -101,7 +101,7 @@ class Planner:
 
     @property
     def estimate(self) -> dict[str, Any] | None:
-        """The recommended line: `slope`, `intercept`, and `angle` in degrees."""
+        """The recommended line: `slope`, `intercept`, and `angle` in degrees; of a front beside the robot alone."""
         estimate: dict[str, Any] | None = self.known["estimates"]["centre"]
         return estimate
 
@@ -117,7 +117,7 @@ class Planner:
         return self._answer
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
-        """The chance that the robot's sensor reads +1 at each place, by what is known now."""
+        """The chance that the robot's sensor reads +1 at each place, as `Flight.probability` has it, by what is known now."""
         return self._native.chance(to_places(places))
 
     def __repr__(self) -> str:
