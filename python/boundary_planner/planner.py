@@ -42,8 +42,8 @@ class Planner:
     ...     planner.observe(pose, read_label() if motion.wants_label else None)
     >>> planner.stop, planner.estimate
 
-    The keys are those of a scenario, and they complete a TOML file if one is given. `pose` is where the robot begins, and `samples` are labels of others that may be
-    wrong. A planner can be pickled: it goes on where it was.
+    The keys are those of a scenario, and they complete a TOML file if one is given. `pose` is where the robot begins, and
+    `samples` are labels of others that may be wrong. A planner can be pickled: it goes on where it was.
     """
 
     def __init__(self, path: str | Path | None = None, /, **keys: Any) -> None:
@@ -117,7 +117,7 @@ class Planner:
         return self._answer
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
-        """The chance that the robot's sensor reads +1 at each place, as `Flight.probability` has it, by what is known now."""
+        """As `Flight.probability`, by what is known now."""
         return self._native.chance(to_places(places))
 
     def __repr__(self) -> str:
