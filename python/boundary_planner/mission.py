@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import warnings
+from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -36,10 +37,10 @@ class Mission:
         """Fly it in the simulated world. Other Python threads go on meanwhile."""
         return Flight(self, _native.run((to_json(self.keys), self._file)))
 
-    def planner(self, **keys: Any) -> Planner:
+    def planner(self, *, state: Mapping[str, Any] | None = None, **keys: Any) -> Planner:
         """A planner for a robot that somebody else moves; `keys` take the place of the mission's."""
         planner = Planner.__new__(Planner)
-        planner._begin((to_json({**self.keys, **keys}), self._file))
+        planner._begin((to_json({**self.keys, **keys}), self._file), state)
         return planner
 
     def __repr__(self) -> str:

@@ -43,15 +43,19 @@ class Planner:
     >>> planner.stop, planner.estimate
 
     The keys are those of a scenario, and they complete a TOML file if one is given. `pose` is where the robot begins, and
-    `samples` are labels of others that may be wrong. A planner can be pickled: it goes on where it was.
+    `samples` are labels of others that may be wrong. A planner can be pickled: it goes on where it was. So does a new one of
+    the same keys with the `state` of the old one.
     """
 
-    def __init__(self, path: str | Path | None = None, /, **keys: Any) -> None:
-        self._begin((to_json(keys), read_file(path)))
+    def __init__(
+        self, path: str | Path | None = None, /, *, state: Mapping[str, Any] | None = None, **keys: Any
+    ) -> None:
+        self._begin((to_json(keys), read_file(path)), state)
 
-    def _begin(self, begun: Told) -> None:
+    def _begin(self, begun: Told, state: Mapping[str, Any] | None = None) -> None:
         self._begun = begun
-        self._native = _native.Planner(begun)
+        again = _native.Planner.again
+        self._native = _native.Planner(begun) if state is None else again(begun, to_json(dict(state)))
         self._ask()
 
     def _ask(self) -> None:
@@ -112,9 +116,15 @@ class Planner:
         return known
 
     @property
+    def state(self) -> dict[str, Any]:
+        """What was done so far, for a planner that goes on."""
+        state: dict[str, Any] = json.loads(self._native.state())
+        return state
+
+    @property
     def answer(self) -> dict[str, Any]:
         """All of it, as docs/reference/next.md says."""
-        return self._answer
+        return {**self._answer, "state": self.state}
 
     def probability(self, places: ArrayLike) -> NDArray[np.float64]:
         """As `Flight.probability`, by what is known now."""
@@ -124,9 +134,7 @@ class Planner:
         return f"<Planner: {self.stop or self.plan()}>"
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"begun": self._begun, "state": self._answer["state"]}
+        return {"begun": self._begun, "state": self.state}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._begun = state["begun"]
-        self._native = _native.Planner.again(self._begun, json.dumps(state["state"]))
-        self._ask()
+        self._begin(state["begun"], state["state"])

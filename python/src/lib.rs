@@ -38,8 +38,14 @@ fn command(py: Python<'_>, words: Vec<String>) -> PyResult<String> {
     use host_sim::cli::wrong_flag::in_one_line;
 
     let words = ["host-sim".to_owned(), "--quiet".to_owned()].into_iter().chain(words);
-    let cli = Cli::try_parse_from(words)
-        .map_err(|why| BoundaryError::new_err(in_one_line(&why).to_string()))?;
+    let cli = match Cli::try_parse_from(words) {
+        Ok(cli) => cli,
+        Err(why) if why.use_stderr() => {
+            return Err(BoundaryError::new_err(in_one_line(&why).to_string()));
+        }
+        // Help, or a version.
+        Err(answer) => return Ok(answer.to_string()),
+    };
     let done = py.detach(|| cli.execute()).map_err(refused)?;
     match done.failure {
         None => Ok(done.text),

@@ -129,7 +129,12 @@ impl Planner {
 
     /// What is to be done next and what is known, as JSON.
     fn answer(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| self.now().answer()).map_err(refused)
+        py.detach(|| self.now().brief_answer()).map_err(refused)
+    }
+
+    /// What was done so far, as JSON.
+    fn state(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| self.now().state()).map_err(refused)
     }
 
     /// Takes in what the motion came to, as JSON.

@@ -33,8 +33,8 @@ pub(crate) struct FrontsFlags {
     told_speed: Option<f64>,
 }
 
-/// Flags of the standard fields that have no meaning with `--fronts`.
-const MEANINGLESS: [&str; 31] = [
+/// Flags of the standard fields that have no meaning with `--fronts` and `--patches`.
+pub(crate) const MEANINGLESS: [&str; 31] = [
     "steps",
     "readings",
     "every",

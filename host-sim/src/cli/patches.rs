@@ -6,6 +6,7 @@ use clap::Args;
 use crate::campaign::patches::flight::Patches;
 use crate::cli::campaign_flags::CampaignFlags;
 use crate::cli::format::Format;
+use crate::cli::fronts::MEANINGLESS;
 use crate::mission::scenario;
 use crate::output::file::json;
 use crate::report::patches;
@@ -20,7 +21,11 @@ const USUAL_P: [f64; 4] = [1.0, 0.9, 0.8, 0.7];
 #[derive(Debug, Args)]
 pub(crate) struct PatchesFlags {
     /// Seek patches and coasts from nothing, beside a lawnmower
-    #[arg(long, conflicts_with_all = ["fronts", "steps", "algorithm", "compare"])]
+    #[arg(
+        long,
+        conflicts_with_all = ["fronts", "steps", "algorithm", "compare"],
+        conflicts_with_all = MEANINGLESS
+    )]
     pub(crate) patches: bool,
     /// The planner is told this multiple of each patch's radius [default: 1]
     #[arg(long, value_name = "FACTOR", requires = "patches")]

@@ -156,7 +156,7 @@ class Explorer:
             return None
         to = self._motion.pose
         self._goal = Pose(to["x"] - self.settings.origin[0], to["z"] - self.settings.origin[1], to["heading"])
-        step = len(self.planner.answer["state"]["done"]) + 1
+        step = len(self.planner.state["done"]) + 1
         self._say(f"motion {step}: goes to ({self._goal.x:.2f}, {self._goal.y:.2f})")
         return self._goal
 
@@ -234,8 +234,8 @@ class Explorer:
     def _resume(self, saved: Path) -> None:
         try:
             kept = json.loads(saved.read_text(encoding="utf-8"))
-            self.planner = self._mission.planner(pose=kept["state"]["start"])
-            self.planner.__setstate__({**self.planner.__getstate__(), "state": kept["state"]})
+            state = kept["state"]
+            self.planner = self._mission.planner(pose=state["start"], state=state)
             self._shift, self._front = kept["shift"], kept["front"]
         except (ValueError, KeyError, TypeError) as error:
             raise BoundaryError(f"{saved} (delete it to begin anew): {error}") from error

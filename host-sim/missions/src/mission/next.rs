@@ -98,7 +98,8 @@ struct Answer<'a> {
     /// The end, as the trace has it; null before.
     end: Option<&'a End>,
     /// For the next request.
-    state: &'a State,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    state: Option<&'a State>,
     /// Of an area from a map: the place, in the map's coordinates, from which the metres of `known`, `step` and `end` are counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     origin: Option<[f64; 2]>,
@@ -277,7 +278,12 @@ impl Conversation {
             let expected = "-1 or 1, as the motion asked for one; null if none could be read";
             return wrong("label", "none", expected);
         }
-        let label: Option<i8> = of_json("label", label.unwrap_or_default())?;
+        let label = label.unwrap_or_default();
+        let number = label.as_i64().and_then(|it| i8::try_from(it).ok());
+        if number.is_none() && !label.is_null() {
+            return wrong("label", label, "-1, 0 on the boundary, 1, or null");
+        }
+        let label = number;
         label.map(|it| reading("label", it)).transpose()?;
         let on_the_way = told("on_the_way", on_the_way, lake.as_deref())?;
         let [x, z] = pose.at("pose", lake.as_deref())?;
@@ -288,14 +294,37 @@ impl Conversation {
         Ok(())
     }
 
-    /// What is to be done next, and what is known.
+    /// The state, in JSON.
     ///
     /// # Errors
-    /// None that is known: when the answer cannot be written as JSON.
+    /// None that is known: when it cannot be written as JSON.
+    pub fn state(&mut self) -> Result<String> {
+        self.state.check = self.state.sum(&self.scenario);
+        Ok(serde_json::to_string(&self.state)?)
+    }
+
+    /// What is to be done next, what is known, and the state.
+    ///
+    /// # Errors
+    /// As [`state`](Self::state).
     pub fn answer(&mut self) -> Result<String> {
+        self.told(true)
+    }
+
+    /// The same without the state, which grows with the mission.
+    ///
+    /// # Errors
+    /// As [`state`](Self::state).
+    pub fn brief_answer(&mut self) -> Result<String> {
+        self.told(false)
+    }
+
+    fn told(&mut self, has_state: bool) -> Result<String> {
         let next = self.session.plan();
-        let Self { session, state, scenario } = self;
-        state.check = state.sum(scenario);
+        if has_state {
+            self.state.check = self.state.sum(&self.scenario);
+        }
+        let Self { session, state, .. } = self;
         let (mission, belief) = (session.mission(), session.belief());
         let Knowledge { slope_arcs, intercept, bits, .. } = belief.knowledge();
         let world = mission.world.after(state.done.len());
@@ -312,7 +341,7 @@ impl Conversation {
             known: Known { bits, slope_arcs, intercept, estimates },
             step: session.last(),
             end: end.as_ref(),
-            state,
+            state: has_state.then_some(&*state),
             origin: mission.lake.as_ref().and_then(|it| it.frame.origin),
         };
         Ok(serde_json::to_string(&answer)? + "\n")
@@ -349,6 +378,8 @@ fn toml(value: Value) -> Option<toml::Value> {
             Some(whole) => whole.into(),
             None => it.as_f64()?.into(),
         },
+        // JSON has no such number.
+        Value::String(it) if it == "inf" => f64::INFINITY.into(),
         Value::String(it) => it.into(),
         Value::Array(all) => all.into_iter().filter_map(toml).collect::<Vec<_>>().into(),
         Value::Object(all) => {
