@@ -97,7 +97,7 @@ struct Answer<'a> {
     step: Option<&'a StepResult>,
     /// The end, as the trace has it; null before.
     end: Option<&'a End>,
-    /// For the next request.
+    /// For the next request; `host-sim next` always prints it.
     #[serde(skip_serializing_if = "Option::is_none")]
     state: Option<&'a State>,
     /// Of an area from a map: the place, in the map's coordinates, from which the metres of `known`, `step` and `end` are counted.
