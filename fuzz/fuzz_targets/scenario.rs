@@ -5,7 +5,7 @@
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
-use host_sim::report::trace::{self, Record};
+use host_sim::mission::trace::{self, Record};
 use host_sim::world::errors::{CUT, Errors};
 use libfuzzer_sys::fuzz_target;
 use planner_core::Workspace as _;
