@@ -6,7 +6,7 @@
 //! `include/planner.h` is made from these sources, `example.c` and `bloom.c` use it. There is no allocation: a
 //! planner lives in memory of the caller, which may be moved. Nothing is global, so there may be many.
 //!
-//! [`held`] has the calls that planners of lines ([`finder`]) and of fronts ([`follower`]) share. A call checks a mission as a
+//! `held` has the calls that planners of lines (`finder`) and of fronts (`follower`) share. A call checks a mission as a
 //! whole before it writes to memory, and writes its answer last. So a refusal changes nothing. All planners take one type of
 //! area, so each is compiled once. Functions match on the planner's kind, and there is no table of methods. So a program that
 //! is linked with `--gc-sections` contains only what it calls.
