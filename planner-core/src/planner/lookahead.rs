@@ -228,7 +228,8 @@ impl<D: Dynamics, B: PredictiveBelief, G: Workspace, C: Criterion, S: Sight>
     }
 
     /// The same, but it stops when the belief meets the goal and an [audit](crate::watch::Audit) has found no label
-    /// against it. `None` means no goal.
+    /// against it. `None` means no goal. An audit takes further motions and labels: a car may need as many as until then. See
+    /// [`without_audit`](Self::without_audit).
     #[must_use]
     #[inline]
     pub fn until<W: Criterion>(self, goal: impl Into<Option<Goal<W>>>) -> Lookahead<D, B, G, W, S> {

@@ -63,6 +63,7 @@ impl<const N: usize, const H: usize, R: Trust> NoisyBelief<N, H, R> {
     };
 
     /// What the given samples leave, lines weighed by [`Prior::Area`]. [`restart`](Self::restart) takes another prior.
+    /// The labels of given samples count as certain.
     ///
     /// # Errors
     /// As [`CellPosterior::new`].
