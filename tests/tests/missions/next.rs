@@ -177,3 +177,14 @@ fn a_spoilt_state_is_refused() {
     let why = format!("{:#}", ask(&request).expect_err("another scenario"));
     assert!(why.contains("state: found another one"), "{why}");
 }
+
+/// A reading without a label is no reading on the boundary: it would count as one.
+#[test]
+fn a_reading_without_a_label_is_refused() {
+    for label in [json!(null), json!(2)] {
+        let place = json!([{ "x": 10, "z": 7, "label": label }]);
+        let request = json!({ "oracle": [], "pose": { "x": 2, "z": 1 }, "samples": place });
+        let why = format!("{:#}", answer(&request.to_string(), None).expect_err("no label"));
+        assert!(why.starts_with("the request: samples[0].label: found "), "{why}");
+    }
+}

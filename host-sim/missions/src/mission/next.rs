@@ -436,7 +436,16 @@ impl Place {
 
     fn told(self, field: &str, lake: Option<&Lake>) -> Result<Told> {
         let [x, z] = self.at(field, lake)?;
-        Ok((x, z, self.label.unwrap_or_default()))
+        let key = format!("{field}.label");
+        let Some(label) = self.label else {
+            return wrong(
+                &key,
+                "none",
+                "-1, 0 on the boundary, or 1; leave out what could not be read",
+            );
+        };
+        reading(&key, label)?;
+        Ok((x, z, label))
     }
 }
 
