@@ -206,16 +206,10 @@ fn explanation(file: &SampleFile, tolerance: Option<f64>) -> Option<String> {
 fn doubted(file: &SampleFile, p: f64, tolerance: Option<f64>) -> Result<Answer> {
     let SampleFile { name, samples, .. } = file;
     let (middle, reach) = ground(file)?;
-    let LinePosterior { cells, pruned_mass } = posterior(file, p, tolerance, (middle, reach))?;
+    let posterior = posterior(file, p, tolerance, (middle, reach))?;
+    let (all, LinePosterior { cells, pruned_mass }) = (posterior.mass(), posterior);
     let home = |(normal, distance): ByNormal| (normal, distance + normal.dot(&middle.coords));
-    let mean = |mass: &Mass| {
-        let length = mass.normal.norm();
-        line_set::line(home((mass.normal / length, mass.distance / length)))
-    };
-    let mut all = Mass::default();
-    for cell in &cells {
-        all.add(&cell.mass, 1.0);
-    }
+    let mean = |mass: &Mass| line_set::line(home(mass.line()));
     let (set, probability) = credible(&cells);
     let slope_arcs = slope_arcs(set.iter().map(|cell| cell.patch.directions()));
     let of_patch = |patch: &Patch| {

@@ -178,13 +178,64 @@ fn a_spoilt_state_is_refused() {
     assert!(why.contains("state: found another one"), "{why}");
 }
 
-/// A reading without a label is no reading on the boundary: it would count as one.
+/// A wrong request is refused by its key; what planners are not told may change.
 #[test]
-fn a_reading_without_a_label_is_refused() {
-    for label in [json!(null), json!(2)] {
-        let place = json!([{ "x": 10, "z": 7, "label": label }]);
-        let request = json!({ "oracle": [], "pose": { "x": 2, "z": 1 }, "samples": place });
-        let why = format!("{:#}", answer(&request.to_string(), None).expect_err("no label"));
-        assert!(why.starts_with("the request: samples[0].label: found "), "{why}");
+fn a_wrong_request_names_its_key() {
+    let first = json!({
+        "algorithm": "lookahead",
+        "oracle": [{ "x": 2, "z": 1, "label": -1 }, { "x": 2, "z": 8, "label": 1 }, { "x": 18, "z": 5, "label": -1 }],
+        "pose": { "x": 2, "z": 1 },
+        "label": null,
+    });
+    let with = |request: &Value, other: &Value| {
+        let mut request = request.clone();
+        for (key, value) in other.as_object().expect("keys") {
+            request[key] = value.clone();
+        }
+        request.to_string()
+    };
+    let answered: Value =
+        serde_json::from_str(&answer(&first.to_string(), None).expect("an answer")).expect("JSON");
+    let mut second = first.clone();
+    second["pose"] = json!({ "x": 2, "z": 3, "heading": 1.5 });
+    second["label"] = json!(-1);
+    second["state"] = answered["state"].clone();
+    for (request, wrong, says) in [
+        (&first, json!({ "pose": { "x": 2 } }), "pose: found a part of a position"),
+        (&first, json!({ "pose": { "x": 2, "z": 50 } }), "pose as start: found (2, 50)"),
+        (&first, json!({ "label": 1 }), "label: found one without a state"),
+        (
+            &first,
+            json!({ "samples": [{ "x": 9, "z": 7, "label": null }] }),
+            "samples[0].label: found none",
+        ),
+        (
+            &first,
+            json!({ "samples": [{ "x": 9, "z": 7, "label": 2 }] }),
+            "samples[0].label: found 2",
+        ),
+        (
+            &first,
+            json!({ "samples": [{ "x": 5, "z": 1, "label": 1 }] }),
+            "samples[0]: label 1 at (5, 1) contradicts",
+        ),
+        (&second, json!({ "pose": { "x": 2, "z": 3 } }), "pose.heading: found none"),
+        (&second, json!({ "pose": null }), "pose: found none"),
+        (&second, json!({ "label": 2 }), "label: found 2"),
+        (&second, json!({ "on_the_way": [{ "x": 2, "z": 2 }] }), "on_the_way[0].label: found none"),
+        (
+            &second,
+            json!({ "samples": [{ "x": 9, "z": 7, "label": 1 }] }),
+            "samples: found some beside a state",
+        ),
+        (&second, json!({ "tolerance": 0.1 }), "state: found another one"),
+        (&second, json!({ "state": "x" }), "state: invalid type"),
+    ] {
+        let why = format!("{:#}", answer(&with(request, &wrong), None).expect_err(says));
+        assert!(why.starts_with(&format!("the request: {says}")), "{wrong}: {why}");
+    }
+    let right = answer(&second.to_string(), None).expect("an answer");
+    for free in [json!({ "steps": 30 }), json!({ "sensor": [{ "dropouts": 0.5 }] })] {
+        assert_eq!(answer(&with(&second, &free), None).expect("an answer"), right, "{free}");
     }
 }

@@ -7,6 +7,7 @@
 
 use nalgebra::{Point2, Vector2, center};
 
+use crate::fitting::line_set::ByNormal;
 use crate::world::extent::span;
 use crate::world::polygon::Polygon;
 
@@ -60,6 +61,12 @@ pub struct Mass {
 }
 
 impl Mass {
+    /// The mean line, by its unit normal and the distance along it.
+    pub fn line(&self) -> ByNormal {
+        let length = self.normal.norm();
+        (self.normal / length, self.distance / length)
+    }
+
     /// Adds another, whose lines count with this weight.
     pub fn add(&mut self, other: &Self, weight: f64) {
         self.measure += weight * other.measure;

@@ -219,19 +219,7 @@ impl Recorder {
 
     /// The error message for a sample that the planner refuses in the next step.
     pub fn refusal(&self, refused: &ObservationError) -> anyhow::Error {
-        let step = self.steps.len() + 1;
-        match refused {
-            ObservationError::Contradiction(sample) => {
-                let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
-                anyhow!(
-                    "step {step}: label {label} at ({}, {}) contradicts the region of certainty it lies in: \
-                     `tolerance` allows for positions that err, `noise` for labels that are wrong",
-                    at.x,
-                    at.y,
-                )
-            }
-            _ => anyhow!("step {step}: {refused}"),
-        }
+        anyhow!("step {}: {}", self.steps.len() + 1, refusal(refused))
     }
 
     /// The mission is over.
@@ -326,6 +314,17 @@ impl Recording {
         let refusal = refused.map(|it| recorder.refusal(&it));
         (recorder.end(flown), refusal)
     }
+}
+
+/// Why a sample is refused, in the words of scenario files.
+pub(crate) fn refusal(refused: &ObservationError) -> String {
+    let ObservationError::Contradiction(sample) = refused else { return refused.to_string() };
+    let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
+    format!(
+        "label {label} at ({}, {}) contradicts the region of certainty it lies in: `tolerance` allows for positions that \
+         err, `noise` for labels that are wrong",
+        at.x, at.y,
+    )
 }
 
 /// The labels of some steps, in order.

@@ -532,7 +532,8 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<M
     let (front, watch) = front::front(file.front.as_ref(), algorithm, (&vehicle, area.bounds()))?;
     let seeking = seeking::seeking(file.seek.as_ref())?;
     let first = file.oracle.first().map(|_| given.samples()[0].site);
-    let start = start(&file.start.0, first, &terrain)?;
+    let is_on_globe = lake.as_ref().is_some_and(|it| it.frame.is_geographic());
+    let start = start(&file.start.0, first, &terrain, is_on_globe)?;
     let errors = errors(&file.errors.0)?;
     let allowance = file.allow.0;
     allowance.check("allow.")?;
@@ -747,7 +748,12 @@ pub fn trusted(field: &str, radius: f64) -> Result<f64> {
 }
 
 /// Where it starts: at the oracle's first point, unless the file says otherwise.
-fn start(table: &StartTable, first: Option<Site>, area: &Terrain) -> Result<Pose> {
+fn start(
+    table: &StartTable,
+    first: Option<Site>,
+    area: &Terrain,
+    is_on_globe: bool,
+) -> Result<Pose> {
     let Ok(heading) = Heading::from_radians(table.heading) else {
         return beyond("start.heading", table.heading);
     };
@@ -755,7 +761,8 @@ fn start(table: &StartTable, first: Option<Site>, area: &Terrain) -> Result<Pose
     let place = |told: Option<f64>, first: Option<f64>| told.or(first);
     let (x, z) = (place(table.x, first.map(|it| it.x)), place(table.z, first.map(|it| it.y)));
     let (Some(x), Some(z)) = (x, z) else {
-        return wrong("start", "no x and z", "both, as the oracle gives no point to start at");
+        let found = if is_on_globe { "no lat and lon" } else { "no x and z" };
+        return wrong("start", found, "both, as the oracle gives no point to start at");
     };
     let site = site("start", x, z)?;
     terrain::check_inside("start", site, area)?;

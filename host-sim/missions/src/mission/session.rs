@@ -3,13 +3,13 @@
 //! [`Mission::fly`] makes the motions of a simulated robot itself. Here the caller is told a motion, makes it, and says
 //! where it ended and what was read.
 
-use anyhow::{Context as _, Result, anyhow};
+use anyhow::{Result, anyhow};
 use planner_core::{Motion, Plan, Pose, Reading, Site, Step};
 
 use crate::mission::definition::Mission;
 use crate::mission::flight::Flown;
 use crate::mission::read_out::{AnyPlanner, ReadOut};
-use crate::mission::recording::{Recorder, Recording};
+use crate::mission::recording::{Recorder, Recording, refusal};
 use crate::mission::results::{Ending, StepResult};
 
 /// What a motion came to, as the robot reports it.
@@ -42,11 +42,11 @@ impl Session {
     /// Names the sample that contradicts what is known.
     pub fn new(mission: Mission, samples: &[(Site, Reading)]) -> Result<Self> {
         let mut planner = mission.planner();
+        let mut recorder = Recorder::new(mission.clone());
         for (k, &(site, reading)) in samples.iter().enumerate() {
             let taken = planner.observe(Pose { site, ..mission.start }, Some(reading));
-            taken.with_context(|| format!("samples[{k}]"))?;
+            taken.map_err(|why| anyhow!("samples[{k}]: {}", refusal(&why)))?;
         }
-        let mut recorder = Recorder::new(mission.clone());
         if !samples.is_empty() {
             recorder.begin_with(planner.belief());
         }
@@ -102,11 +102,6 @@ impl Session {
     /// The mission.
     pub const fn mission(&self) -> &Mission {
         &self.mission
-    }
-
-    /// Where the robot is.
-    pub const fn pose(&self) -> Pose {
-        self.pose
     }
 
     /// What is known.
