@@ -488,8 +488,8 @@ typedef struct {
    */
   double speed;
   /*
-   0 to go along the front. Or so many metres of it, from 0.1 to 10000: the planner stays with them, about the place
-   where it finds the front, and learns where the front is all along them.
+   0 to go along the front. Or so many metres of it, from 0.1 to 10000, about the place where the planner finds it. The
+   planner stays with them, and learns where the front is all along.
    */
   double stretch;
   /*
@@ -565,8 +565,8 @@ planner_verdict planner_check(const planner_mission *mission,
  a planner that is in that memory stays as it was.
 
  # Safety
- `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, the mission's area
- null or readable, and none of them in that memory.
+ `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
+ must be null or readable. None of them may lie in that memory.
  */
 planner_status planner_begin(planner_t **made,
                              void *memory,
@@ -698,8 +698,8 @@ planner_verdict planner_follower_check(const planner_mission *mission,
  that is refused writes nothing: a planner that is in that memory stays as it was.
 
  # Safety
- `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
- the mission's area null or readable, and none of them in that memory.
+ `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
+ must be null or readable. None of them may lie in that memory.
  */
 planner_status planner_follow(planner_follower_t **made,
                               void *memory,

@@ -138,8 +138,8 @@ pub unsafe extern "C" fn check(
 /// a planner that is in that memory stays as it was.
 ///
 /// # Safety
-/// `memory` must be null or writable for so many bytes, `given` null or readable for so many samples, the mission's area
-/// null or readable, and none of them in that memory.
+/// `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
+/// must be null or readable. None of them may lie in that memory.
 #[unsafe(export_name = "planner_begin")]
 pub unsafe extern "C" fn begin(
     made: Option<&mut MaybeUninit<*mut Finder>>,

@@ -35,8 +35,8 @@ pub struct FrontSettings {
     pub radius: f64,
     /// How far the front may move in the time of a motion, metres. If in doubt, name a higher speed.
     pub speed: f64,
-    /// 0 to go along the front. Or so many metres of it, from 0.1 to 10000: the planner stays with them, about the place
-    /// where it finds the front, and learns where the front is all along them.
+    /// 0 to go along the front. Or so many metres of it, from 0.1 to 10000, about the place where the planner finds it. The
+    /// planner stays with them, and learns where the front is all along.
     pub stretch: f64,
     /// 1 to end once the robot has gone along all of the front: back to where it found it, or to the border at both ends.
     /// 0 to go on. With a stretch it must be 0.
@@ -135,8 +135,8 @@ pub unsafe extern "C" fn follower_check(
 /// that is refused writes nothing: a planner that is in that memory stays as it was.
 ///
 /// # Safety
-/// `memory` must be null or writable for so many bytes, `given` readable for so many samples or null if there are none,
-/// the mission's area null or readable, and none of them in that memory.
+/// `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
+/// must be null or readable. None of them may lie in that memory.
 #[unsafe(export_name = "planner_follow")]
 pub unsafe extern "C" fn follow(
     made: Option<&mut MaybeUninit<*mut Follower>>,

@@ -1,6 +1,6 @@
 //! The storeys, which ARCHITECTURE.md shows: a module reads only from its own folder and from folders below it, and
-//! modules never read each other in a circle. Checked on the sources of `planner-core`, its interface for C, and `host-sim`
-//! (with the crate below it), test code included; then on made-up sources, so that the check is known to fail when it should.
+//! modules never read each other in a circle. This is checked on the sources of `planner-core`, its interface
+//! for C, and `host-sim` with the crate below it. Test code is included. Made-up sources show that the check can fail.
 //!
 //! And each word has one meaning: `planner-core` defines no type name twice.
 //!
