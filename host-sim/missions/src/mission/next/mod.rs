@@ -4,6 +4,7 @@
 //! and what was read. Planners decide the same again from the same, so all of them are planned anew.
 
 mod answer;
+mod place;
 mod request;
 mod state;
 
@@ -14,8 +15,9 @@ use serde_json::{Map, Value};
 
 use crate::mission::definition::Mission;
 use crate::mission::next::answer::{Answer, Known, Next, Why};
-use crate::mission::next::request::{NAME, Request, keys, reading, settings, told};
-use crate::mission::next::state::{Done, State, readings_of};
+use crate::mission::next::place::{reading, readings_of, told};
+use crate::mission::next::request::{NAME, Request, keys, settings};
+use crate::mission::next::state::{Done, State};
 use crate::mission::read_out::{Expectation, Knowledge};
 use crate::mission::recording::beside_truth;
 use crate::mission::results::Ending;

@@ -1,17 +1,14 @@
 //! A request: the keys of a scenario, and what the robot says of its last motion.
 
 use anyhow::{Result, anyhow};
-use planner_core::{Label, Reading};
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
-use serde_with::skip_serializing_none;
 
 use crate::mission::lake::Lake;
-use crate::mission::next::state::{State, Told};
+use crate::mission::next::place::{Place, told};
+use crate::mission::next::state::State;
 use crate::mission::setting::Setting;
 use crate::mission::strict::wrong;
-use crate::mission::terrain::on_map;
 
 /// What a request is called in messages.
 pub(super) const NAME: &str = "the request";
@@ -28,19 +25,6 @@ pub(super) struct Request {
     pub(super) samples: Vec<Place>,
     /// In all requests but the first: the `state` of the answer before
     pub(super) state: Option<State>,
-}
-
-/// A place as a request gives it, with a heading or with a label.
-#[skip_serializing_none]
-#[derive(Clone, Copy, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, expecting = "a place, as { \"x\": 2, \"z\": 1 }")]
-pub(super) struct Place {
-    x: Option<f64>,
-    z: Option<f64>,
-    lat: Option<f64>,
-    lon: Option<f64>,
-    pub(super) heading: Option<f64>,
-    label: Option<i8>,
 }
 
 /// A key of a request, which is taken out of it.
@@ -111,44 +95,5 @@ fn toml(value: Value) -> Option<toml::Value> {
             let entry = |(key, value)| Some((key, toml(value)?));
             all.into_iter().filter_map(entry).collect::<toml::Table>().into()
         }
-    })
-}
-
-pub(super) fn told(field: &str, places: &[Place], lake: Option<&Lake>) -> Result<Vec<Told>> {
-    let each = places.iter().enumerate();
-    each.map(|(k, it)| it.told(&format!("{field}[{k}]"), lake)).collect()
-}
-
-impl Place {
-    /// Metres on the lattice.
-    pub(super) fn at(mut self, field: &str, lake: Option<&Lake>) -> Result<[f64; 2]> {
-        on_map(field, lake, [&mut self.x, &mut self.z], [self.lat, self.lon])?;
-        match (self.x, self.z) {
-            (Some(x), Some(z)) => Ok([x, z]),
-            _ => wrong(field, "a part of a position", "x and z"),
-        }
-    }
-
-    fn told(self, field: &str, lake: Option<&Lake>) -> Result<Told> {
-        let [x, z] = self.at(field, lake)?;
-        let key = format!("{field}.label");
-        let Some(label) = self.label else {
-            return wrong(
-                &key,
-                "none",
-                "-1, 0 on the boundary, or 1; leave out what could not be read",
-            );
-        };
-        reading(&key, label)?;
-        Ok((x, z, label))
-    }
-}
-
-pub(super) fn reading(key: &str, label: i8) -> Result<Reading> {
-    Ok(match label {
-        1 => Label::Positive.into(),
-        -1 => Label::Negative.into(),
-        0 => Reading::Boundary,
-        other => return wrong(key, other, "-1, 0 on the boundary, or 1"),
     })
 }

@@ -2,11 +2,10 @@
 
 use anyhow::{Result, anyhow};
 use crc::{CRC_32_ISO_HDLC, Crc};
-use nalgebra::Point2;
-use planner_core::{Heading, Pose, Reading, Site};
+use planner_core::{Heading, Pose};
 use serde::{Deserialize, Serialize};
 
-use crate::mission::next::request::{Place, reading};
+use crate::mission::next::place::{Place, Told, reading, readings_of, site};
 use crate::mission::session::Arrival;
 
 /// What was done so far.
@@ -23,9 +22,6 @@ pub(super) struct State {
     /// The motions.
     pub(super) done: Vec<Done>,
 }
-
-/// Metres on the lattice, and a label.
-pub(super) type Told = (f64, f64, i8);
 
 /// A motion that was made: where it ended, what was read there, and on the way.
 #[derive(Serialize, Deserialize)]
@@ -57,16 +53,4 @@ impl Done {
             passed: readings_of(field, &self.on_the_way)?,
         })
     }
-}
-
-fn site(field: &str, x: f64, z: f64) -> Result<Site> {
-    Site::try_from(Point2::new(x, z)).map_err(|why| anyhow!("{field}: {why}"))
-}
-
-pub(super) fn readings_of(field: &str, told: &[Told]) -> Result<Vec<(Site, Reading)>> {
-    let one = |(k, &(x, z, label)): (usize, &Told)| {
-        let field = format!("{field}[{k}]");
-        Ok((site(&field, x, z)?, reading(&format!("{field}.label"), label)?))
-    };
-    told.iter().enumerate().map(one).collect()
 }
