@@ -8,7 +8,7 @@ use stm32f4xx_hal::time::{Bps, Hertz};
 use crate::reset::Reset;
 
 /// The speed of both serial lines, the link's and the log's.
-pub(crate) const BAUD: Bps = Bps(115_200);
+pub const BAUD: Bps = Bps(115_200);
 
 const CRYSTAL: Hertz = Hertz::MHz(8);
 const FULL_SPEED: Hertz = Hertz::MHz(168);
@@ -19,7 +19,7 @@ const POLLS: u32 = 100_000;
 
 /// Where the core clock comes from.
 #[derive(Clone, Copy, PartialEq, Eq, defmt::Format)]
-pub(crate) enum Clock {
+pub enum Clock {
     /// The crystal, through the PLL: 168 MHz.
     Crystal,
     /// The internal oscillator: 16 MHz.
@@ -34,7 +34,7 @@ impl Clock {
     /// The HAL's own waits have no bound. Under emulation none is reached. On the chip they are reached only after the
     /// crystal was seen to run. The PLL can still hang, and then the watchdog resets the chip. After that reset the
     /// crystal is not used, so there is no loop of resets.
-    pub(crate) fn start(rcc: pac::RCC, reset: Reset) -> (Self, Rcc) {
+    pub fn start(rcc: pac::RCC, reset: Reset) -> (Self, Rcc) {
         let clock = Self::find(&rcc, reset);
         let config = match clock {
             Self::Crystal => Config::hse(CRYSTAL).sysclk(FULL_SPEED),
@@ -66,7 +66,7 @@ impl Clock {
     }
 
     /// The frequency that `SysTick` counts.
-    pub(crate) const fn hz(self) -> u32 {
+    pub const fn hz(self) -> u32 {
         match self {
             Self::Crystal | Self::Emulated => FULL_SPEED.raw(),
             Self::Internal => INTERNAL.raw(),

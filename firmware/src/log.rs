@@ -111,7 +111,7 @@ impl Log {
 }
 
 /// Opens both ways out. What was logged before goes to the wire alone.
-pub(crate) fn open(usart: USART2, pin: PA2, debug: &DBGMCU, rcc: &mut Rcc) {
+pub fn open(usart: USART2, pin: PA2, debug: &DBGMCU, rcc: &mut Rcc) {
     // A probe reads memory in sleep too.
     debug.cr().modify(|_, w| w.dbg_sleep().set_bit());
     let channels = rtt_init! { up: { 0: { size: 1024, name: "defmt" } } };
@@ -125,7 +125,7 @@ pub(crate) fn open(usart: USART2, pin: PA2, debug: &DBGMCU, rcc: &mut Rcc) {
 }
 
 /// Sends what the wire takes without a wait; says whether more is waiting.
-pub(crate) fn drain() -> bool {
+pub fn drain() -> bool {
     let (more, dropped) = Log::with(Log::send);
     if dropped != 0 {
         defmt::warn!("the log was full: {=u32} messages lost", dropped);
@@ -134,7 +134,7 @@ pub(crate) fn drain() -> bool {
 }
 
 /// Sends all that is waiting. Only the watchdog ends this if the transmitter is stuck.
-pub(crate) fn flush() {
+pub fn flush() {
     while drain() {}
     while Log::with(Log::is_sending) {}
 }

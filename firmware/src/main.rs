@@ -6,14 +6,9 @@
 //!
 //! | module | does |
 //! | --- | --- |
-//! | `clock` | the core clock: crystal, internal oscillator, or none to set under emulation |
-//! | `log` | defmt frames to RTT and to USART2, never waiting for a reader |
 //! | `mission` | what `idle` runs: asks for a mission and flies it |
-//! | `reset` | why the chip started |
 //! | `serial` | the link: USART1 |
-//! | `stop` | the drive's enable pin; panics and faults pull it low, log, and restart |
 //! | `time` | the beat of `SysTick`, and its ticks |
-//! | `watchdog` | restarts the chip when it hangs |
 //!
 //! | pin | is |
 //! | --- | --- |
@@ -25,21 +20,11 @@
 //! `cargo firmware` builds it. The same ELF runs on the chip and in QEMU's `netduinoplus2`.
 
 #[cfg(target_os = "none")]
-mod clock;
-#[cfg(target_os = "none")]
-mod log;
-#[cfg(target_os = "none")]
 mod mission;
-#[cfg(target_os = "none")]
-mod reset;
 #[cfg(target_os = "none")]
 mod serial;
 #[cfg(target_os = "none")]
-mod stop;
-#[cfg(target_os = "none")]
 mod time;
-#[cfg(target_os = "none")]
-mod watchdog;
 
 #[cfg(target_os = "none")]
 #[rtic::app(device = stm32f4xx_hal::pac)]
@@ -50,14 +35,14 @@ mod app {
     use planner_core::{Label, PinSensor};
     use stm32f4xx_hal::gpio::GpioExt;
 
-    use crate::clock::Clock;
-    use crate::log;
     use crate::mission::{Board, Deck};
-    use crate::reset::Reset;
     use crate::serial::{self, Arrivals, Receiver, Serial};
-    use crate::stop::Enable;
     use crate::time::{Mono, ticks};
-    use crate::watchdog::Watchdog;
+    use board::clock::Clock;
+    use board::log;
+    use board::reset::Reset;
+    use board::stop::Enable;
+    use board::watchdog::Watchdog;
 
     #[shared]
     struct Shared {}

@@ -8,7 +8,7 @@ use planner_core::{AnySight, AnyVehicle, LocalLine, PinSensor, Reading, Step};
 use stm32f4xx_hal::gpio::{Input, PB1};
 
 use crate::serial::Serial;
-use crate::stop::Enable;
+use board::stop::Enable;
 
 /// Samples that a mission with true labels can hold: 64 labels beside four given ones.
 const TRUE_SAMPLES: usize = 68;

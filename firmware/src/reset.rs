@@ -4,7 +4,7 @@ use stm32f4xx_hal::pac::RCC;
 
 /// The reason that the flags in RCC's CSR show.
 #[derive(Clone, Copy, PartialEq, Eq, defmt::Format)]
-pub(crate) enum Reset {
+pub enum Reset {
     /// The independent watchdog: the firmware hung.
     Watchdog,
     /// The firmware restarted the chip after a panic or a fault: see `stop`.
@@ -19,7 +19,7 @@ pub(crate) enum Reset {
 
 impl Reset {
     /// Reads the flags and clears them for the next time.
-    pub(crate) fn take(rcc: &RCC) -> Self {
+    pub fn take(rcc: &RCC) -> Self {
         let flags = rcc.csr().read();
         rcc.csr().modify(|_, w| w.rmvf().set_bit());
         // Every reset pulls the pin, and power's sets the brown-out flag too: the rarer goes first.

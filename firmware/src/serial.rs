@@ -14,10 +14,10 @@ use stm32f4xx_hal::pac::USART1;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::{Rx1, RxListen, Serial as Usart, Tx1};
 
-use crate::clock::BAUD;
-use crate::log;
 use crate::time::{Duration, Instant, Mono, ticks, ticks_per_second};
-use crate::watchdog::Watchdog;
+use board::clock::BAUD;
+use board::log;
+use board::watchdog::Watchdog;
 
 /// What an answer may take, counted from the end of the question: 100 ms at least.
 const WAIT: Duration = Duration::from_ticks(11);

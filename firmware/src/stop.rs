@@ -19,19 +19,21 @@ use stm32f4xx_hal::pac::GPIOB;
 use crate::log;
 
 /// Drive enable: high only during a mission.
-pub(crate) struct Enable(PB0<Output>);
+pub struct Enable(PB0<Output>);
 
 impl Enable {
     /// Starts low.
-    pub(crate) fn new(pin: PB0) -> Self {
+    pub fn new(pin: PB0) -> Self {
         Self(pin.into_push_pull_output_in_state(PinState::Low))
     }
 
-    pub(crate) fn on(&mut self) {
+    /// The drive may move.
+    pub fn on(&mut self) {
         self.0.set_high();
     }
 
-    pub(crate) fn off(&mut self) {
+    /// The drive stands.
+    pub fn off(&mut self) {
         self.0.set_low();
     }
 }

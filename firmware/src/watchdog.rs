@@ -13,10 +13,11 @@ const PERIOD_MS: u32 = 6_000;
 const _: () = assert!(20_000_000 / 16_000 * 3 < PERIOD_MS * 32 / 47);
 
 /// The watchdog, started. Nothing but a debugger that halts the core stops it.
-pub(crate) struct Watchdog(IndependentWatchdog);
+pub struct Watchdog(IndependentWatchdog);
 
 impl Watchdog {
-    pub(crate) fn start(iwdg: IWDG, debug: &DBGMCU) -> Self {
+    /// Starts it; a debugger that halts the core halts it too.
+    pub fn start(iwdg: IWDG, debug: &DBGMCU) -> Self {
         let mut watchdog = IndependentWatchdog::new(iwdg);
         watchdog.stop_on_debug(debug, true);
         watchdog.start(PERIOD_MS.millis());
@@ -24,7 +25,7 @@ impl Watchdog {
     }
 
     /// Puts the reset off by the whole period.
-    pub(crate) fn feed(&mut self) {
+    pub fn feed(&mut self) {
         self.0.feed();
     }
 }

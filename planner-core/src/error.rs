@@ -14,4 +14,4 @@ pub use crate::motion::contract::ContractError;
 pub use crate::motion::dynamics::RoomError;
 pub use crate::planner::setup::SetupError;
 pub use crate::planner::snapshot::RestoreError;
-pub use crate::robot::{AgentError, VehicleError};
+pub use crate::robot::{AgentError, VehicleError, WheelsError};

@@ -75,6 +75,7 @@
 //! | a lake of any shape | [`Charted`] and [`Chart`] |
 //! | a vehicle | [`Unicycle`], [`Boat`], [`Car`], [`Holonomic`], or [`dynamics`] of your own |
 //! | your drive and sensor | [`robot`]: `Drive` and `LabelSensor`; [`robot::asynchronous`] has the same for `async` |
+//! | two motors by embedded-hal | [`TwoWheels`](robot::TwoWheels) |
 //! | to switch the chip off between motions | [`Persist`], with the feature `serde` |
 //! | planner and vehicle on two machines | `link`, with the feature `link` |
 //! | the estimates of any set of lines | [`estimate`] |

@@ -17,10 +17,14 @@ use host_sim::hil::qemu::Emulator;
 use host_sim::mission::definition::Mission;
 use planner_core::link::frame::Frame;
 use planner_core::link::message::LabelSource;
+use planner_core::{
+    Area, Goal, Heading, Label, Lookahead, Plan, Planner as _, Pose, Reading, Sample, Unicycle,
+    VersionSpace,
+};
 use tempfile::{NamedTempFile, TempPath};
 
 use crate::debugger::{Debugger, free_port};
-use crate::machines::Kind;
+use crate::machines::{Kind, WHEELS};
 
 /// For anything that a board does within five seconds of its own, where a busy machine gives it few.
 pub(crate) const PATIENCE: Duration = Duration::from_mins(1);
@@ -73,7 +77,7 @@ impl Board {
         player.finish()
     }
 
-    /// The log so far, each message after the chip's time of it in milliseconds.
+    /// The log so far, each message after the chip's time of it in milliseconds, if it has a clock.
     pub(crate) fn log(&self) -> Vec<(u32, String)> {
         let elf = fs::read(&self.elf).expect("cargo left an ELF");
         let table = Table::parse(&elf).expect("the ELF is sound").expect("it logs");
@@ -83,8 +87,11 @@ impl Board {
         loop {
             match decoder.decode() {
                 Ok(frame) => {
-                    let time = frame.display_timestamp().expect("all have one").to_string();
-                    let at = time.replace('.', "").parse().expect("seconds, three decimals");
+                    // A program without a clock has no times.
+                    let at = frame.display_timestamp().map_or(0, |time| {
+                        let digits = time.to_string().replace('.', "");
+                        digits.parse().expect("seconds, three decimals")
+                    });
                     messages.push((at, frame.display_message().to_string()));
                 }
                 Err(DecodeError::UnexpectedEof) => return messages,
@@ -138,4 +145,29 @@ pub(crate) fn play_until(motions: usize, link: &mut TcpStream, player: &mut Play
 /// Arguments that have QEMU log writes to what it does not emulate.
 pub(crate) fn writes_to(file: &Path) -> [&str; 4] {
     ["-d", "unimp", "-D", file.to_str().expect("the path is UTF-8")]
+}
+
+/// Planner and drive on one chip, whose pin for the label is low wherever it goes: it finds the line that this machine
+/// finds, after as many labels, and then stands still.
+#[test]
+fn a_robot_on_two_wheels_finds_a_line_without_a_link() -> Result<()> {
+    let Some(board) = Board::start(WHEELS, &[]) else { return Ok(()) };
+    let given = [([2.0, 1.0], -1), ([2.0, 8.0], 1), ([18.0, 16.0], 1), ([18.0, 5.0], -1)];
+    let label = |sign| if sign > 0 { Label::Positive } else { Label::Negative };
+    let given = given.map(|(place, sign)| Sample::at(place, label(sign)).expect("on the lattice"));
+    let area = Area::metres([0.0, 0.0], [20.0, 20.0])?;
+    let mut planner = Lookahead::new(area, Unicycle::default(), VersionSpace::<32>::new(&given)?)?
+        .until(Goal::slope_within_degrees(0.5)?.unaudited());
+    let mut pose = Pose { site: given[0].site, heading: Heading(0) };
+    let mut expected = Vec::new();
+    while let Plan::Move(motion) = planner.plan(pose) {
+        pose = motion.target;
+        let reading = motion.wants_label.then_some(Reading::Side(Label::Negative));
+        planner.observe(pose, reading)?;
+        expected.push(format!("read {:?}", reading.map(Reading::sign)));
+    }
+    expected.push(format!("the line: {:?}", planner.estimate()));
+    expected.push("stopped: Known".to_owned());
+    assert_eq!(board.messages_until(1, "stopped"), expected);
+    Ok(())
 }

@@ -45,6 +45,9 @@ pub(crate) const STM32: Kind = Kind {
     core: emulator::Core::M4F,
 };
 
+/// The same board on a robot with two wheels, which it drives itself.
+pub(crate) const WHEELS: Kind = Kind { program: "wheels", ..STM32 };
+
 /// The second, with `firmware/microbit`.
 pub(crate) const NRF51: Kind = Kind {
     name: "nRF51822",
