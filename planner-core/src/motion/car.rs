@@ -42,6 +42,20 @@ pub struct Car {
 }
 
 /// What a [`Car`] can do.
+///
+/// ```
+/// use planner_core::{Car, CarShape};
+///
+/// // A garden tractor: a turning circle of 2 m, motions of 0.5 m to 5 m in steps of 0.25 m, chords 10 mrad apart.
+/// let car = Car::new(CarShape {
+///     radius_mm: 2_000,
+///     shortest_mm: 500,
+///     turn_step_urad: 10_000,
+///     speeds: 21,
+///     speed_step_mm: 250,
+/// })?;
+/// # Ok::<(), planner_core::error::GridError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -32,6 +32,18 @@ impl LabelSensor for Infallible {
 }
 
 /// A drive that is a function: it makes a motion and returns where it ended.
+///
+/// ```
+/// use planner_core::Motion;
+/// use planner_core::robot::DriveFn;
+///
+/// # fn command(turn_rad: f32, distance_m: f32) -> Result<(), &'static str> { Ok(()) }
+/// let drive = DriveFn(|motion: &Motion| {
+///     command(motion.control.turn_rad, motion.control.distance_m)?; // your motors
+///     Ok::<_, &'static str>(motion.target) // or where your localisation says that it ended
+/// });
+/// # let _: DriveFn<_> = drive;
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct DriveFn<F>(pub F);
 
@@ -43,7 +55,15 @@ impl<F: FnMut(&Motion) -> Result<Pose, E>, E: core::fmt::Debug> Drive for DriveF
     }
 }
 
-/// A label sensor that is a function.
+/// A label sensor that is a function: it returns a [`Label`], or a [`Reading`].
+///
+/// ```
+/// use planner_core::Label;
+/// use planner_core::robot::SensorFn;
+///
+/// # fn depth() -> Result<f32, &'static str> { Ok(1.2) }
+/// let sensor = SensorFn(|| Ok::<_, &'static str>(if depth()? > 2.0 { Label::Positive } else { Label::Negative }));
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct SensorFn<F>(pub F);
 
