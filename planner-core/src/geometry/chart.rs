@@ -183,9 +183,10 @@ impl<'a> Chart<'a> {
         self.cells.get(first + word).copied().unwrap_or(0)
     }
 
-    /// From a site on a closed cell to the middle of an open one, among the nearest; `None` on open cells, and where none
-    /// is within sixteen cells.
-    pub(crate) fn way_home(&self, from: Site) -> Option<Vector> {
+    /// From a site that has less than so much open ground about it to the middle of a cell that has it, among the nearest.
+    /// From an open cell the way is straight over open cells. `None` from any other site, and where there is no such way
+    /// within sixteen cells.
+    pub(crate) fn way_home(&self, from: Site, by: u32) -> Option<Vector> {
         let Vector { x, z } = from - self.bounds.min();
         let side = self.side as i32;
         let [column, row] = [x, z].map(|it| it.checked_div_euclid(side).unwrap_or(0));
@@ -193,13 +194,17 @@ impl<'a> Chart<'a> {
             let cell = [u16::try_from(column).ok()?, u16::try_from(row).ok()?];
             self.is_open(cell).then(|| self.middle_of(cell)).flatten()
         };
-        if open(column, row).is_some() {
+        if self.holds(&[from], by) {
             return None;
         }
-        (1..=16).find_map(|ring: i32| {
+        let is_afloat = self.holds(&[from], 0);
+        let is_home = |to: &Site| {
+            self.holds(&[*to], by) && (!is_afloat || self.holds(&[from, *to], 0))
+        };
+        (0..=16).find_map(|ring: i32| {
             let all = (-ring..=ring).flat_map(|k| [(k, -ring), (k, ring), (-ring, k), (ring, k)]);
-            let ways = all.filter_map(|(x, z)| Some(open(column + x, row + z)? - from));
-            ways.min_by_key(|way| way.dot(*way))
+            let homes = all.filter_map(|(x, z)| open(column + x, row + z)).filter(is_home);
+            homes.map(|home| home - from).min_by_key(|way| way.dot(*way))
         })
     }
 }
@@ -287,11 +292,30 @@ mod tests {
         let cells = [0b1100_u32; 4];
         let chart = Chart::new(Site::ORIGIN, SIDE, [4, 4], &cells).unwrap();
         for (x, z) in [(100, 1_500), (1_900, 3_900), (-2_500, 700), (700, -3_000)] {
-            let home = at(x, z).step(chart.way_home(at(x, z)).unwrap()).unwrap();
+            let home = at(x, z).step(chart.way_home(at(x, z), 0).unwrap()).unwrap();
             assert!(chart.is_open(chart.cell_of(home).unwrap()));
         }
-        assert_eq!(chart.way_home(at(2_500, 1_500)), None);
-        assert_eq!(chart.way_home(at(40_000, 1_500)), None);
+        assert_eq!(chart.way_home(at(2_500, 1_500), 0), None);
+        assert_eq!(chart.way_home(at(40_000, 1_500), 0), None);
+    }
+
+    #[test]
+    fn from_beside_the_shore_the_way_home_leads_off_it_without_a_landfall() {
+        // Water about a spit: row 2 is land from column 2 on.
+        let cells = [0xff_u32, 0xff, 0b11, 0xff, 0xff, 0xff];
+        let chart = Chart::new(Site::ORIGIN, SIDE, [8, 6], &cells).unwrap();
+        for x in (1_100..7_000).step_by(300) {
+            for z in [1_990, 3_010] {
+                let from = at(x, z);
+                let home = chart.way_home(from, 300).map(|way| from.step(way).unwrap());
+                match home {
+                    Some(home) => assert!(chart.holds(&[home], 300) && chart.holds(&[from, home], 0)),
+                    None => assert!(chart.holds(&[from], 300), "{from:?}"),
+                }
+            }
+        }
+        assert_ne!(chart.way_home(at(5_500, 1_990), 300), None);
+        assert_eq!(chart.way_home(at(5_500, 1_690), 300), None);
     }
 
     #[test]

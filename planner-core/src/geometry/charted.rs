@@ -44,7 +44,8 @@ impl<G: Workspace> Workspace for Charted<'_, G> {
     }
 
     fn way_home(&self, from: Site) -> Vector {
-        let home = self.chart.and_then(|it| it.way_home(from));
+        let margin = self.area.bounds().margin();
+        let home = self.chart.and_then(|it| it.way_home(from, margin));
         home.unwrap_or_else(|| self.area.way_home(from))
     }
 
