@@ -130,6 +130,25 @@ impl<'a> Chart<'a> {
 
     /// Whether all of a hull lies on open cells, with so many lattice units of ground about it.
     pub(crate) fn holds(&self, hull: &[Site], by: u32) -> bool {
+        self.holds_but_for(None, hull, by)
+    }
+
+    /// Whether a motion leads away from where errors have brought the agent. `swept` are the corners of its hull, the first
+    /// of them where it begins. Ashore, the cell that the agent stands on counts as open. Where all cells about it are
+    /// closed too, any motion is as good as another.
+    pub(crate) fn lets_out(&self, swept: &[Site]) -> bool {
+        let own = swept.first().and_then(|it| self.cell_of(*it));
+        self.holds_but_for(own, swept, 0) || own.is_none_or(|own| self.is_inland(own))
+    }
+
+    /// Whether a cell and all about it are closed.
+    fn is_inland(&self, [column, row]: [u16; 2]) -> bool {
+        let [columns, rows] = [column, row].map(|it| it.saturating_sub(1)..=it.saturating_add(1));
+        rows.flat_map(|z| columns.clone().map(move |x| [x, z])).all(|it| !self.is_open(it))
+    }
+
+    /// As [`holds`](Self::holds), where one cell counts as open.
+    fn holds_but_for(&self, own: Option<[u16; 2]>, hull: &[Site], by: u32) -> bool {
         let by = i64::from(by.min(LIMIT.unsigned_abs()));
         let side = i64::from(self.side);
         let from = |at: Site| {
@@ -156,7 +175,7 @@ impl<'a> Chart<'a> {
                     right = right.max(ends[0].1).max(ends[1].1);
                 }
             }
-            left > right || self.is_open_between(row, [left - by, right + by])
+            left > right || self.is_open_between(row, [left - by, right + by], own)
         })
     }
 
@@ -165,8 +184,9 @@ impl<'a> Chart<'a> {
         extent.height().checked_div(self.side).unwrap_or(0).saturating_add(2).min(self.rows.into())
     }
 
-    /// Whether all cells of a row from one to another coordinate are open.
-    fn is_open_between(&self, row: u16, [left, right]: [i64; 2]) -> bool {
+    /// Whether all cells of a row from one to another coordinate are open, or that one.
+    fn is_open_between(&self, row: u16, [left, right]: [i64; 2], own: Option<[u16; 2]>) -> bool {
+        let own = own.filter(|it| it[1] == row).map(|it| u32::from(it[0]));
         let column = |x: i64| u32::try_from(x.div_euclid(i64::from(self.side))).ok();
         let (Some(first), Some(last)) = (column(left), column(right)) else { return false };
         last < self.columns.into()
@@ -174,7 +194,8 @@ impl<'a> Chart<'a> {
                 let from = if word == first / 32 { first % 32 } else { 0 };
                 let to = if word == last / 32 { last % 32 } else { 31 };
                 let mask = u32::MAX << from & u32::MAX >> (31 - to);
-                self.word(row, word as usize) & mask == mask
+                let own = own.filter(|it| it / 32 == word).map_or(0, |it| 1 << (it % 32));
+                (self.word(row, word as usize) | own) & mask == mask
             })
     }
 
@@ -184,7 +205,7 @@ impl<'a> Chart<'a> {
     }
 
     /// From a site that has less than so much open ground about it to the middle of a cell that has it, among the nearest.
-    /// From an open cell the way is straight over open cells. `None` from any other site, and where there is no such way
+    /// The way there is straight, and [leads out](Self::lets_out). `None` from any other site, and where there is no such way
     /// within sixteen cells.
     pub(crate) fn way_home(&self, from: Site, by: u32) -> Option<Vector> {
         let Vector { x, z } = from - self.bounds.min();
@@ -197,10 +218,7 @@ impl<'a> Chart<'a> {
         if self.holds(&[from], by) {
             return None;
         }
-        let is_afloat = self.holds(&[from], 0);
-        let is_home = |to: &Site| {
-            self.holds(&[*to], by) && (!is_afloat || self.holds(&[from, *to], 0))
-        };
+        let is_home = |to: &Site| self.holds(&[*to], by) && self.lets_out(&[from, *to]);
         (0..=16).find_map(|ring: i32| {
             let all = (-ring..=ring).flat_map(|k| [(k, -ring), (k, ring), (-ring, k), (ring, k)]);
             let homes = all.filter_map(|(x, z)| open(column + x, row + z)).filter(is_home);
@@ -309,13 +327,39 @@ mod tests {
                 let from = at(x, z);
                 let home = chart.way_home(from, 300).map(|way| from.step(way).unwrap());
                 match home {
-                    Some(home) => assert!(chart.holds(&[home], 300) && chart.holds(&[from, home], 0)),
+                    Some(home) => {
+                        assert!(chart.holds(&[home], 300) && chart.holds(&[from, home], 0))
+                    }
                     None => assert!(chart.holds(&[from], 300), "{from:?}"),
                 }
             }
         }
         assert_ne!(chart.way_home(at(5_500, 1_990), 300), None);
         assert_eq!(chart.way_home(at(5_500, 1_690), 300), None);
+    }
+
+    #[test]
+    fn from_ashore_a_motion_leads_out_over_its_own_cell_alone() {
+        // A spit as above: row 2 is land from column 2 on; below, rows 3 to 5 are land.
+        let cells = [0xff_u32, 0xff, 0b11, 0, 0, 0];
+        let chart = Chart::new(Site::ORIGIN, SIDE, [8, 6], &cells).unwrap();
+        let leads_out = |from: [i32; 2], to: [i32; 2]| {
+            let [from, to] = [from, to].map(|[x, z]| at(x, z));
+            chart.lets_out(&[from, to])
+        };
+        // From the shore straight into the water, and not along the shore first.
+        assert!(
+            leads_out([5_500, 2_100], [5_500, 1_500]) && leads_out([5_500, 2_100], [5_600, 2_200])
+        );
+        assert!(
+            !leads_out([5_500, 2_100], [6_500, 2_100])
+                && !leads_out([5_500, 2_100], [7_500, 1_900])
+        );
+        // From the water never ashore, and from inland anywhere.
+        assert!(!leads_out([5_500, 1_900], [5_500, 2_100]));
+        assert!(
+            leads_out([5_500, 4_500], [5_500, 3_500]) && leads_out([5_500, 9_500], [5_500, 5_500])
+        );
     }
 
     #[test]

@@ -126,15 +126,14 @@ pub trait Workspace: Copy {
     /// hull may not come nearer to a keep-out than its margin.
     ///
     /// If an error has brought the agent too near to a keep-out, a motion from there need only stay out of the keep-out
-    /// itself.
+    /// itself. So it is with closed cells, and of these the agent may cross the one that it stands on.
     fn lets_pass(&self, swept: &[Site]) -> bool {
         let extent = Extent::of(swept);
         let margin = self.bounds().margin();
         self.keep_outs().all(|it| !it.is_near(extent, 0) || it.lets_pass(swept))
             && self.chart().is_none_or(|it| {
                 let start = swept.get(..1).unwrap_or_default();
-                it.holds(swept, margin)
-                    || !it.holds(start, margin) && (!it.holds(start, 0) || it.holds(swept, 0))
+                it.holds(swept, margin) || !it.holds(start, margin) && it.lets_out(swept)
             })
     }
 }
