@@ -11,6 +11,7 @@ pub mod flat;
 pub(crate) mod front;
 pub mod fronts;
 pub mod ground;
+#[cfg(not(target_family = "wasm"))]
 pub mod log;
 pub(crate) mod look;
 mod map;

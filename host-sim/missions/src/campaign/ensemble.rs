@@ -5,7 +5,6 @@ use std::ops::Range;
 use std::vec;
 
 use anyhow::{Context as _, Result};
-use indicatif::ProgressBar;
 use planner_core::{
     AnyReliability, AnyVehicle, Crossing, Following, Policy, Prior, Reading, Tolerance,
 };
@@ -24,7 +23,7 @@ use crate::mission::read_out::ReadOut;
 use crate::mission::results::cost;
 use crate::mission::scenario;
 use crate::mission::vehicle::{self, Source};
-use crate::output::notes::progress;
+use crate::output::notes::{ProgressBar, progress};
 use crate::world::errors::Errors;
 use crate::world::noise::NoiseModel;
 

@@ -159,7 +159,7 @@ impl<D: Dynamics> Strategy<D> for Chords {
         let (way, longest) = (place - from, f64::from(grid.reach_m(grid.speeds() - 1)));
         self.arrives = way.norm() <= longest;
         let share = if self.arrives { 1.0 } else { longest / way.norm() };
-        let heading = Heading::from_radians(way.y.atan2(way.x)).unwrap_or(pose.heading);
+        let heading = Heading::from_radians(libm::atan2(way.y, way.x)).unwrap_or(pose.heading);
         let site = Site::try_from(from + way * share).map_err(|_| StopReason::Cornered)?;
         let [ray, _] = dynamics.around(pose, heading);
         let steps = share * way.norm() / f64::from(grid.reach_m(1));

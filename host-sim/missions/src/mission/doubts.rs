@@ -62,9 +62,9 @@ pub(crate) fn of_slope(area: &Polygon, [slope, intercept]: [f64; 2]) -> Option<S
         let above = area.clip(&Line::from_slope(slope, intercept)?, 1.0).area() / area.area();
         Some(above.min(1.0 - above))
     };
-    let radians = slope.to_radians();
-    let is_doubtful = slope.abs() <= 90.0 && cut(slope)? < LITTLE && cut(radians.tan())? > LITTLE;
-    let meant = tidy(radians.tan());
+    let meant = libm::tan(slope.to_radians());
+    let is_doubtful = slope.abs() <= 90.0 && cut(slope)? < LITTLE && cut(meant)? > LITTLE;
+    let meant = tidy(meant);
     is_doubtful.then(|| {
         format!("truth.slope: {slope}; are these degrees? {slope} deg are a slope of {meant}")
     })

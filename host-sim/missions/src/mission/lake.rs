@@ -6,8 +6,8 @@
 //! A cell is open if no side of a polygon meets it and its middle lies inside. Of the open cells the largest connected piece is
 //! kept: what lies apart from it no robot reaches. How much of the ground is lost to both is told.
 
+use std::mem;
 use std::path::Path;
-use std::{fs, mem};
 
 use anyhow::{Result, anyhow, bail};
 use geojson::{Feature, GeometryValue, Position};
@@ -19,6 +19,7 @@ use serde_json::{Number, Value, json};
 use crate::output::kind;
 use crate::world::crs::Crs;
 use crate::world::extent::around;
+use crate::world::files;
 use crate::world::frame::Frame;
 
 /// Cells along the longer side of the ground, unless the scenario says another number.
@@ -105,7 +106,7 @@ pub(crate) fn read_polygons(
     name: &str,
     is_geographic: bool,
 ) -> Result<Vec<Vec<Vec<[f64; 2]>>>> {
-    let text = fs::read(path).map_err(|error| {
+    let text = files::read(path).map_err(|error| {
         let expected = "the name of one, beside the scenario";
         anyhow!("found {} as {name}, expected {expected}", kind::unread(&error))
     })?;

@@ -40,6 +40,7 @@ pub fn csv(records: &[impl Serialize]) -> Result<String> {
 /// # Errors
 /// When the folder cannot be written to.
 pub fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    #[cfg_attr(not(unix), expect(unused_mut, reason = "only Unix has permissions to set"))]
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)]
     {

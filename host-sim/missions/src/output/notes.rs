@@ -5,8 +5,6 @@ use std::fmt::Display;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use anstyle::{AnsiColor, Style};
-use anyhow::Result;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use crate::output::plain::message;
 
@@ -67,26 +65,63 @@ pub fn error(error: &anyhow::Error) {
     );
 }
 
-/// A progress bar for `count` items, called `of`, with rate and time left. It shows on a terminal alone.
-///
-/// # Errors
-/// Never: the template is sound.
-pub fn progress(count: u64, of: &str) -> Result<ProgressBar> {
-    let style = format!("{{msg}}  {{bar:40}} {{pos}}/{{len}} {of}  {{per_sec}}  {{eta}} left");
-    styled(ProgressBar::new(count), &style)
-}
+pub use bars::*;
 
-/// A counter of items whose total is not known.
-///
-/// # Errors
-/// Never: the template is sound.
-pub fn count(of: &str) -> Result<ProgressBar> {
-    styled(ProgressBar::new_spinner(), &format!("{{spinner}} {{pos}} {of}, {{elapsed}}"))
-}
+#[cfg(not(target_family = "wasm"))]
+mod bars {
+    use anyhow::Result;
+    pub use indicatif::ProgressBar;
+    use indicatif::{ProgressDrawTarget, ProgressStyle};
 
-fn styled(bar: ProgressBar, style: &str) -> Result<ProgressBar> {
-    if !is_told(Loudness::Usual) {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
+    use super::{Loudness, is_told};
+
+    /// A progress bar for `count` items, called `of`, with rate and time left. It shows on a terminal alone.
+    ///
+    /// # Errors
+    /// Never: the template is sound.
+    pub fn progress(count: u64, of: &str) -> Result<ProgressBar> {
+        let style = format!("{{msg}}  {{bar:40}} {{pos}}/{{len}} {of}  {{per_sec}}  {{eta}} left");
+        styled(ProgressBar::new(count), &style)
     }
-    Ok(bar.with_style(ProgressStyle::with_template(style)?))
+
+    /// A counter of items whose total is not known.
+    ///
+    /// # Errors
+    /// Never: the template is sound.
+    pub fn count(of: &str) -> Result<ProgressBar> {
+        styled(ProgressBar::new_spinner(), &format!("{{spinner}} {{pos}} {of}, {{elapsed}}"))
+    }
+
+    fn styled(bar: ProgressBar, style: &str) -> Result<ProgressBar> {
+        if !is_told(Loudness::Usual) {
+            bar.set_draw_target(ProgressDrawTarget::hidden());
+        }
+        Ok(bar.with_style(ProgressStyle::with_template(style)?))
+    }
+}
+
+/// A browser has no terminal for bars.
+#[cfg(target_family = "wasm")]
+mod bars {
+    #![allow(missing_docs, reason = "as where there is one")]
+
+    #[derive(Debug)]
+    pub struct ProgressBar;
+
+    /// # Errors
+    /// Never.
+    pub fn progress(_: u64, _: &str) -> anyhow::Result<ProgressBar> {
+        Ok(ProgressBar)
+    }
+
+    impl ProgressBar {
+        #[must_use]
+        pub fn with_message(self, _: &str) -> Self {
+            self
+        }
+
+        pub fn inc(&self, _: u64) {}
+
+        pub fn finish_and_clear(&self) {}
+    }
 }

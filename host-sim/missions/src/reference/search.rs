@@ -9,7 +9,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{self, AtomicI64, AtomicU64};
 
 use anyhow::{Result, bail};
-use indicatif::ParallelProgressIterator as _;
 use planner_core::dynamics::Action;
 use planner_core::{Reading, Sample};
 use rayon::prelude::*;
@@ -97,7 +96,7 @@ impl<'a> Search<'a> {
         }
         tasks.sort_by(Branch::by_bound);
         let bar = progress(tasks.len() as u64, "beginnings")?;
-        tasks.into_par_iter().progress_with(bar.clone()).for_each(|task| self.descend(&task));
+        tasks.into_par_iter().inspect(|_| bar.inc(1)).for_each(|task| self.descend(&task));
         bar.finish_and_clear();
         if self.is_too_long() {
             bail!(

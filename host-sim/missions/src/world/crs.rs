@@ -4,10 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, bail};
 use geographiclib_rs::{Geodesic, InverseGeodesic as _};
-use proj4rs::Proj;
-use proj4rs::transform::transform;
+#[cfg(not(target_family = "wasm"))]
+use proj4rs::{Proj, transform::transform};
 use serde::{Serialize, Serializer};
 
 /// A system by its number in the EPSG registry. Its x points east and its z north.
@@ -18,10 +18,15 @@ pub struct Crs {
 }
 
 /// The system, and degrees of WGS84. Each is some 600 bytes.
+#[cfg(not(target_family = "wasm"))]
 struct Systems {
     own: Proj,
     degrees: Proj,
 }
+
+/// None is known in a browser: the table of all is larger than the rest.
+#[cfg(target_family = "wasm")]
+enum Systems {}
 
 /// How far a metre of the system may be from a metre on the ground.
 const DISTORTION: f64 = 0.01;
@@ -38,11 +43,29 @@ impl FromStr for Crs {
         let code: u16 = code.with_context(|| {
             format!("found {text:?}, expected EPSG: and a number, as EPSG:25832")
         })?;
+        Ok(Self { code, systems: Arc::new(Systems::of(code)?) })
+    }
+}
+
+#[cfg(target_family = "wasm")]
+impl Systems {
+    fn of(code: u16) -> Result<Self> {
+        bail!("found EPSG:{code}, expected latitude and longitude: a browser knows no other system")
+    }
+
+    fn degrees(&self, _: [f64; 2]) -> Option<[f64; 2]> {
+        match *self {}
+    }
+}
+
+#[cfg(not(target_family = "wasm"))]
+impl Systems {
+    fn of(code: u16) -> Result<Self> {
         let proj = Proj::from_epsg_code(code).map_err(|error| {
-            anyhow!("found EPSG:{code}, expected a system that is known here: {error}")
+            anyhow::anyhow!("found EPSG:{code}, expected a system that is known here: {error}")
         })?;
         let degrees = Proj::from_proj_string("+proj=longlat +datum=WGS84 +no_defs")
-            .map_err(|error| anyhow!("WGS84: {error}"))?;
+            .map_err(|error| anyhow::anyhow!("WGS84: {error}"))?;
         if proj.is_latlong() {
             bail!(
                 "found EPSG:{code}, which is in degrees, expected a system in metres; \
@@ -57,7 +80,13 @@ impl FromStr for Crs {
                 "found EPSG:{code}, which has other axes than east and north, expected a map in metres"
             );
         }
-        Ok(Self { code, systems: Arc::new(Systems { own: proj, degrees }) })
+        Ok(Self { own: proj, degrees })
+    }
+
+    fn degrees(&self, [x, z]: [f64; 2]) -> Option<[f64; 2]> {
+        let mut at = (x, z);
+        transform(&self.own, &self.degrees, &mut at).ok()?;
+        Some([at.1, at.0].map(f64::to_degrees))
     }
 }
 
@@ -85,13 +114,10 @@ impl Crs {
     /// # Errors
     /// The system does not reach there.
     pub fn degrees(&self, [x, z]: [f64; 2]) -> Result<[f64; 2]> {
-        let mut at = (x, z);
-        let found = transform(&self.systems.own, &self.systems.degrees, &mut at);
-        let place = [at.1, at.0].map(f64::to_degrees);
-        match found {
-            Ok(()) if place.iter().all(|it| it.is_finite()) => Ok(place),
-            _ => bail!("--crs {self}: found ({x}, {z}), which is no place of this system"),
-        }
+        let place = self.systems.degrees([x, z]).filter(|it| it.iter().all(|it| it.is_finite()));
+        place.with_context(|| {
+            format!("--crs {self}: found ({x}, {z}), which is no place of this system")
+        })
     }
 
     /// Checks that a metre of the system is one on the ground about a position.

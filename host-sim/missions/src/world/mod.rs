@@ -8,6 +8,7 @@ pub mod crs;
 pub mod errors;
 pub mod extent;
 pub mod faults;
+pub mod files;
 pub mod frame;
 pub mod geotiff;
 pub mod grid;

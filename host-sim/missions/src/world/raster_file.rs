@@ -1,13 +1,13 @@
 //! Rasters as files have them: PNG images, grids of ESRI's ASCII format, and `GeoTIFF`.
 
-use std::fs::{self, File};
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
 use png::{BitDepth, ColorType, Decoder, Transformations};
 
+use crate::world::files;
 use crate::world::geotiff;
 use crate::world::grid::{Grid, check_cells};
 
@@ -24,25 +24,25 @@ pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
     if !is_tiff && ending != "png" && ending != "asc" {
         bail!("a PNG image (.png), an ESRI ASCII grid (.asc) or a GeoTIFF (.tif)");
     }
-    // A device or a pipe may have no end.
-    let found = fs::metadata(path).ok().filter(|it| it.is_file() && it.len() <= MOST_BYTES);
+    let found = files::size(path).filter(|it| *it <= MOST_BYTES);
     found.with_context(|| format!("a file, of {} MB at most", MOST_BYTES >> 20))?;
     if is_tiff {
-        let grid = File::open(path)
+        let grid = files::open(path)
             .map_err(Into::into)
             .and_then(|file| geotiff::read(BufReader::new(file)));
         grid.map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
     } else if ending == "png" {
         image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
     } else {
-        let text = fs::read_to_string(path).map_err(|why| anyhow!("a text file: {why}"))?;
+        let text = files::open(path).and_then(io::read_to_string);
+        let text = text.map_err(|why| anyhow!("a text file: {why}"))?;
         ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
     }
 }
 
 /// The luminance of each pixel, as the file has it: up to 255, with 16 bits up to 65535.
 fn image(path: &Path, [min, max]: [Point2<f64>; 2]) -> Result<Grid> {
-    let mut decoder = Decoder::new(BufReader::new(File::open(path)?));
+    let mut decoder = Decoder::new(BufReader::new(files::open(path)?));
     decoder.set_transformations(Transformations::EXPAND);
     let mut reader = decoder.read_info()?;
     let [columns, rows] = [reader.info().width, reader.info().height].map(|it| it as usize);

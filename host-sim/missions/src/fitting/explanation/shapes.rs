@@ -26,7 +26,7 @@ pub(super) fn arc(labels: &Labels, best: Directed) -> Option<(f64, Found)> {
     let height = |index: usize| {
         let [up, along] = directed.seen(labels.at[index]);
         // Over the length of the gradient, for the distance.
-        let slope = (1.0 - bend * up / reach).hypot(bend * along / reach).max(0.1);
+        let slope = libm::hypot(1.0 - bend * up / reach, bend * along / reach).max(0.1);
         (up - bend * lifted.lift[index] - directed.offset) / slope
     };
     // Of the circle: |q|^2 - 2 (R / bend) n . q + 2 (R / bend) offset = 0.
