@@ -443,6 +443,9 @@ fn boundary(record: &BoundaryRecord) -> String {
         BoundaryRecord { polyline: Some(points), .. } => {
             format!("a polyline through {} points, +1 above", points.len())
         }
+        BoundaryRecord { polygon: Some(corners), .. } => {
+            format!("a polygon of {} corners, +1 inside", corners.len())
+        }
         BoundaryRecord { raster: Some(file), threshold: Some(threshold), .. } => {
             format!("the raster {}, +1 from {threshold} up", plain::name(file))
         }

@@ -1,6 +1,5 @@
 //! `truth` of a scenario file: the boundary of the simulated world.
 
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Result, anyhow, bail};
@@ -17,6 +16,7 @@ use crate::world::World;
 use crate::world::boundary::{CoastRecord, Curve};
 use crate::world::circle::Circle;
 use crate::world::extent::around;
+use crate::world::files;
 use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
@@ -48,6 +48,8 @@ pub(crate) struct TruthTable {
     sine: Option<Numbers<3>>,
     /// `[[x, z], ...]`, +1 above; each `x` is greater than the one before, and the ends go on straight
     polyline: Option<Vec<Numbers<2>>>,
+    /// `[[x, z], ...]`, +1 inside
+    polygon: Option<Vec<Numbers<2>>>,
     /// A random coast about the middle of the area, +1 above
     coast: Option<Table<CoastRecord>>,
     /// A file beside the scenario, +1 where its value is `threshold` or more, see below
@@ -85,6 +87,8 @@ impl TruthTable {
             Box::new(self.sine(wave)?)
         } else if let Some(points) = &self.polyline {
             Box::new(polyline(points)?)
+        } else if let Some(points) = &self.polygon {
+            Box::new(Shapes::drawn(places("truth.polygon", points, 3)?))
         } else if let Some(Table(coast)) = &self.coast {
             Box::new(self::coast(*coast, rectangle)?)
         } else if let Some(name) = &self.geojson {
@@ -99,7 +103,7 @@ impl TruthTable {
                 return wrong("truth.threshold", threshold, "a number");
             }
             let path = folder.join(name);
-            if let Err(error) = fs::File::open(&path) {
+            if let Err(error) = files::open(&path) {
                 let expected = "the name of one, beside the scenario";
                 return wrong(
                     "truth.raster",
@@ -144,6 +148,7 @@ impl TruthTable {
             ("circle", self.circle.is_some()),
             ("sine", self.sine.is_some()),
             ("polyline", self.polyline.is_some()),
+            ("polygon", self.polygon.is_some()),
             ("coast", self.coast.is_some()),
             ("raster", has_raster),
             ("geojson", self.geojson.is_some()),
@@ -238,21 +243,33 @@ fn coast(record: CoastRecord, [min, max]: [Point2<f64>; 2]) -> Result<Polyline> 
     coast.map_or_else(|| wrong("truth.coast", "none", "a coast"), Ok)
 }
 
+/// Points of a boundary, so many at least.
+fn places(field: &str, points: &[Numbers<2>], fewest: usize) -> Result<Way> {
+    if points.len() < fewest {
+        return wrong(field, format!("{} points", points.len()), format!("{fewest} at least"));
+    }
+    let place = |(i, Numbers([x, z])): (usize, &Numbers<2>)| {
+        if x.abs() <= FURTHEST && z.abs() <= FURTHEST {
+            return Ok(Point2::new(*x, *z));
+        }
+        wrong(&format!("{field}[{i}]"), format!("[{x}, {z}]"), "metres, up to 1e6")
+    };
+    points.iter().enumerate().map(place).collect()
+}
+
 fn polyline(points: &[Numbers<2>]) -> Result<Polyline> {
     const FIELD: &str = "truth.polyline";
-    if points.len() < 2 {
-        return wrong(FIELD, format!("{} points", points.len()), "2 at least");
-    }
-    for (i, pair) in points.iter().enumerate() {
-        let Numbers([x, z]) = *pair;
-        if !(x.abs() <= FURTHEST && z.abs() <= FURTHEST) {
-            return wrong(&format!("{FIELD}[{i}]"), format!("[{x}, {z}]"), "metres, up to 1e6");
+    let places = places(FIELD, points, 2)?;
+    for (i, pair) in places.windows(2).enumerate() {
+        let [before, at] = [pair[0], pair[1]];
+        if at.x <= before.x {
+            let expected = format!("an x above that of the point before, {}", before.x);
+            return wrong(
+                &format!("{FIELD}[{}]", i + 1),
+                format!("[{}, {}]", at.x, at.y),
+                expected,
+            );
         }
-        if i > 0 && x <= points[i - 1].0[0] {
-            let expected = format!("an x above that of the point before, {}", points[i - 1].0[0]);
-            return wrong(&format!("{FIELD}[{i}]"), format!("[{x}, {z}]"), expected);
-        }
     }
-    let places = points.iter().map(|Numbers(at)| Point2::from(*at)).collect();
     Polyline::through(places).map_or_else(|| wrong(FIELD, "these", "points from left to right"), Ok)
 }

@@ -40,6 +40,8 @@ pub struct BoundaryRecord {
     pub sine: Option<[f64; 3]>,
     /// The points.
     pub polyline: Option<Vec<[f64; 2]>>,
+    /// The corners.
+    pub polygon: Option<Vec<[f64; 2]>>,
     /// A random coast: the deviation of its heights, its length scale, its seed.
     pub coast: Option<CoastRecord>,
     /// The file.

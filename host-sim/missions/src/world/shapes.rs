@@ -1,4 +1,4 @@
-//! Polygons of a map as the boundary: the label is +1 inside.
+//! Polygons as the boundary, drawn or of a map: the label is +1 inside.
 
 use nalgebra::Point2;
 use planner_core::{Label, Reading};
@@ -9,17 +9,22 @@ use crate::world::way::{self, Way};
 /// Polygons with holes.
 #[derive(Clone, Debug)]
 pub struct Shapes {
-    /// The file.
-    name: String,
+    /// The file, if they are from one.
+    name: Option<String>,
     /// All rings, each with its first corner again at its end.
     rings: Vec<Way>,
 }
 
 impl Shapes {
+    /// A polygon by its corners.
+    pub fn drawn(corners: Way) -> Self {
+        Self { name: None, ..Self::new(String::new(), vec![corners]) }
+    }
+
     /// The polygons of the file called `name`: rings around them and around their holes.
     pub fn new(name: String, rings: Vec<Way>) -> Self {
         let closed = |ring: Way| ring.iter().chain(ring.first()).copied().collect();
-        Self { name, rings: rings.into_iter().map(closed).collect() }
+        Self { name: Some(name), rings: rings.into_iter().map(closed).collect() }
     }
 }
 
@@ -48,6 +53,8 @@ impl Curve for Shapes {
     }
 
     fn record(&self) -> BoundaryRecord {
-        BoundaryRecord { geojson: Some(self.name.clone()), ..BoundaryRecord::default() }
+        let corners = |ring: &Way| ring[..ring.len() - 1].iter().map(|at| (*at).into()).collect();
+        let polygon = self.rings.first().filter(|_| self.name.is_none()).map(corners);
+        BoundaryRecord { polygon, geojson: self.name.clone(), ..BoundaryRecord::default() }
     }
 }
