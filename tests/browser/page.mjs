@@ -10,7 +10,7 @@ import { createRequire } from 'node:module';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { chromium } from 'playwright-core';
+import { launched } from './launched.mjs';
 
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const [file, folder, extent] = process.argv.slice(2);
@@ -119,10 +119,7 @@ async function check_looks(page, what) {
   }
 }
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
-});
+const browser = await launched();
 mkdirSync(folder, { recursive: true });
 const address = pathToFileURL(resolve(file)).href;
 const looks = [[1280, 800, 'light'], [360, 740, 'dark']];

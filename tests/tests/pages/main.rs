@@ -7,5 +7,6 @@ mod links;
 mod logs;
 mod package;
 mod page;
+mod playground;
 mod reference_pages;
 mod storeys;

@@ -35,7 +35,7 @@ fn a_spill_in_a_browser() {
 
 fn look_at(name: &str, page: fn() -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
-    if let Some(missing) = missing(&folder) {
+    if let Some(missing) = missing() {
         build::skip("pages in a browser", &missing);
         return;
     }
@@ -53,7 +53,8 @@ fn look_at(name: &str, page: fn() -> String) {
 }
 
 /// What is not there that the browser needs.
-fn missing(folder: &Path) -> Option<String> {
+pub(crate) fn missing() -> Option<String> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     let chromium = env::var_os("CHROMIUM").unwrap_or(CHROMIUM.into());
     if !build::has_tool("node") {
         return Some("node is not on the path".into());

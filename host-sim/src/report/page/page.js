@@ -2,6 +2,8 @@
 
 const PAGE = JSON.parse(document.getElementById('data').textContent);
 const BEAT_MS = 900;
+/** A long mission plays faster. */
+const WHOLE_MS = 30_000;
 const PAPER = matchMedia('print');
 
 const controls = Object.fromEntries(
@@ -214,7 +216,7 @@ function play() {
   quiet(true);
   controls.play.setAttribute('aria-label', 'Pause');
   controls.play.classList.add('playing');
-  state.timer = setInterval(() => go(state.step + 1), BEAT_MS);
+  state.timer = setInterval(() => go(state.step + 1), Math.min(BEAT_MS, WHOLE_MS / steps));
 }
 
 function pause() {

@@ -1,0 +1,271 @@
+// What was made, as a plain object; as a scenario file; as the end of a link.
+
+/** The boundaries that can be drawn, and what each begins with. Places are shares of the field. */
+const KINDS = {
+  line: { name: 'Line', hint: 'Drag across the field to draw another line, or move its two ends.', size: '20 x 20', points: [[0.05, 0.23], [0.95, 0.56]] },
+  bend: { name: 'Bend', hint: 'Drag from left to right to draw another coast, or move its points.', size: '100 x 80', points: [[0, 0.3], [0.25, 0.62], [0.5, 0.5], [0.72, 0.7], [1, 0.45]] },
+  circle: { name: 'Circle', hint: 'Drag from the middle to the rim to draw another spill, or move both.', size: '100 x 80', points: [[0.6, 0.56], [0.75, 0.56]] },
+  shape: { name: 'Shape', hint: 'Drag all the way round a shape to draw it, or move its corners.', size: '100 x 80', points: [[0.42, 0.4], [0.62, 0.35], [0.8, 0.5], [0.74, 0.72], [0.6, 0.68], [0.52, 0.8], [0.4, 0.66]] },
+  coast: { name: 'Any coast', hint: 'A coast that chance draws. Run with other luck for another.', size: '100 x 80', points: [] },
+};
+const PLANNERS = [['lookahead', 'Straight lines: two labels ahead'], ['cfc', 'Straight lines: Algorithm 1'], ['scc', 'Straight lines: Algorithm 2'], ['track', 'Fronts: finds and follows'], ['lawnmower', 'Parallel tracks, to compare'], ['random', 'Random walk, to compare']];
+const VEHICLES = [['unicycle', 'Rover: turns on the spot'], ['boat', 'Boat: turns as it drives'], ['car', 'Car: drives arcs']];
+const SENSORS = [['1', 'always right'], ['0.98', 'right in 98 of 100'], ['0.95', 'right in 95 of 100'], ['0.9', 'right in 9 of 10'], ['0.8', 'right in 8 of 10']];
+const SIZES = ['20 x 20', '50 x 50', '100 x 80', '200 x 150', '800 x 500'];
+/** Where the four labels are known, and where the robot begins. */
+const TOLD = [[0.1, 0.05], [0.1, 0.4], [0.9, 0.8], [0.9, 0.25]];
+const START = [0.1, 0.05];
+
+/** What one begins with who chooses a boundary to draw. */
+function begun(kind, seed = 1) {
+  const { size, points } = KINDS[kind];
+  const isLine = kind === 'line';
+  const field = ground({ size, map: null });
+  return { kind, size, points: places(field, points), start: places(field, [START])[0], told: isLine, moves: false, vehicle: 'unicycle', p: isLine ? '1' : '0.95', planner: isLine ? 'lookahead' : 'track', seed, map: null, text: null };
+}
+
+/** Where a field lies, metres; of a map also its rings, and the latitude and longitude of the origin. */
+function ground({ size, map }) {
+  if (map !== null) return mapped(map);
+  const [width, height] = size.split(' x ').map(Number);
+  return { left: 0, bottom: 0, width, height, rings: [], origin: null };
+}
+
+/** Shares of a field as metres. */
+function places({ left, bottom, width, height }, shares) {
+  return shares.map(([x, z]) => [tidy(left + x * width), tidy(bottom + z * height)]);
+}
+
+/** The rings of all polygons of a GeoJSON file. */
+function rings(text) {
+  const found = [];
+  const take = (it) => {
+    if (Array.isArray(it)) it.forEach(take);
+    else if (it?.type === 'Polygon') found.push(...it.coordinates);
+    else if (it?.type === 'MultiPolygon') found.push(...it.coordinates.flat());
+    else take(it?.features ?? it?.geometries ?? it?.geometry ?? []);
+  };
+  take(JSON.parse(text));
+  const isPlace = (it) => Array.isArray(it) && it.length > 1 && it.slice(0, 2).every(Number.isFinite);
+  if (found.length === 0 || !found.every((ring) => Array.isArray(ring) && ring.length > 2 && ring.every(isPlace))) {
+    throw new Error('found no polygon, expected a GeoJSON file with a Polygon or MultiPolygon');
+  }
+  return found.map((ring) => ring.map(([x, z]) => [x, z]));
+}
+
+const METRES_A_DEGREE = 111_195;
+
+/** Rings in latitude and longitude as metres about their middle, as the simulator counts them. */
+function mapped(text) {
+  if (mapped.text === text) return mapped.ground;
+  const all = rings(text);
+  const bounds = around(all.flat());
+  const round = (it) => Math.round(it * 1e4) / 1e4;
+  const origin = [round((bounds.top + bounds.bottom) / 2), round((bounds.left + bounds.right) / 2)];
+  const metres = ([lon, lat]) => [(lon - origin[1]) * METRES_A_DEGREE * Math.cos((origin[0] * Math.PI) / 180), (lat - origin[0]) * METRES_A_DEGREE];
+  const own = all.map((ring) => ring.map(metres));
+  const { left, right, bottom, top } = around(own.flat());
+  mapped.text = text;
+  mapped.ground = { left, bottom, width: right - left, height: top - bottom, rings: own, origin };
+  return mapped.ground;
+}
+
+/** A place in the water of a map. */
+function afloat(field) {
+  const { left, bottom, width, height } = field;
+  const inside = ([x, z]) => field.rings.filter((ring) => isWithin(ring, [x, z])).length % 2 === 1;
+  const open = (at) => [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].every(([x, z]) => inside([at[0] + x * 0.04 * width, at[1] + z * 0.04 * height]));
+  for (let k = 0; k < 400; k += 1) {
+    // Along the diagonals, from a corner.
+    const at = [left + width * (((k * 7) % 20) + 0.5) / 20, bottom + (height * (Math.floor(k / 20) + 0.5)) / 20];
+    if (open(at)) return at.map(tidy);
+  }
+  return [left + width / 2, bottom + height / 2].map(tidy);
+}
+
+/** A shape from a file as corners in a field. Latitude and longitude are brought to its middle. */
+function brought(text, { left, bottom, width, height }) {
+  const [longest] = rings(text).sort((a, b) => b.length - a.length);
+  const isNear = longest.every(([x, z]) => x >= left && x <= left + width && z >= bottom && z <= bottom + height);
+  const isGlobe = longest.every(([x, z]) => Math.abs(x) <= 180 && Math.abs(z) <= 90);
+  const open = longest.filter(([x, z], k) => k === 0 || x !== longest[0][0] || z !== longest[0][1]);
+  if (isNear && !(isGlobe && longest.some(([x, z]) => x % 1 && z % 1))) return thinned(open, 0, 300);
+  const box = around(open);
+  const shrink = isGlobe ? Math.cos((((box.top + box.bottom) / 2) * Math.PI) / 180) : 1;
+  const scale = 0.7 * Math.min(width / ((box.right - box.left) * shrink), height / (box.top - box.bottom));
+  const middle = [(box.left + box.right) / 2, (box.bottom + box.top) / 2];
+  const there = ([x, z]) => [tidy(left + width / 2 + (x - middle[0]) * shrink * scale), tidy(bottom + height / 2 + (z - middle[1]) * scale)];
+  return thinned(open.map(there), width / 400, 120);
+}
+
+/** Fewer points of a way: those within `off` of the rest are left out, and more until there are few enough. */
+function thinned(points, off, most) {
+  const kept = (from, to) => {
+    const [[px, pz], [qx, qz]] = [points[from], points[to]];
+    const length = Math.hypot(qx - px, qz - pz) || 1;
+    let [furthest, far] = [0, off];
+    for (let k = from + 1; k < to; k += 1) {
+      const [x, z] = points[k];
+      const away = px === qx && pz === qz ? Math.hypot(x - px, z - pz) : Math.abs((qx - px) * (z - pz) - (qz - pz) * (x - px)) / length;
+      if (away > far) [furthest, far] = [k, away];
+    }
+    return furthest === 0 ? [points[from]] : [...kept(from, furthest), ...kept(furthest, to)];
+  };
+  if (points.length < 3) return points;
+  const all = [...kept(0, points.length - 1), points.at(-1)];
+  return all.length <= most ? all : thinned(points, 1.5 * off + 1e-3, most);
+}
+
+function isWithin(ring, [x, z]) {
+  const crossed = ring.filter(([px, pz], k) => {
+    const [qx, qz] = ring[(k + 1) % ring.length];
+    return pz <= z !== qz <= z && px + ((z - pz) / (qz - pz)) * (qx - px) < x;
+  });
+  return crossed.length % 2 === 1;
+}
+
+/** Metres to the millimetre. */
+function tidy(metres) {
+  return Math.round(metres * 1000) / 1000;
+}
+
+/** Which side a place is on; null where only the simulator knows. */
+function side(state, [x, z]) {
+  const { kind, points } = state;
+  if (state.map !== null || kind === 'coast') return null;
+  if (kind === 'circle') {
+    const [middle, rim] = points;
+    return Math.hypot(x - middle[0], z - middle[1]) < Math.hypot(rim[0] - middle[0], rim[1] - middle[1]) ? 1 : -1;
+  }
+  if (kind === 'shape') return isWithin(points, [x, z]) ? 1 : -1;
+  const sorted = fromLeft(points);
+  let k = 0;
+  while (k < sorted.length - 2 && sorted[k + 1][0] <= x) k += 1;
+  const [[px, pz], [qx, qz]] = [sorted[k], sorted[k + 1]];
+  return (qx - px) * (z - pz) - (qz - pz) * (x - px) > 0 ? 1 : -1;
+}
+
+/** Points from left to right, each further right than the one before. */
+function fromLeft(points) {
+  const sorted = points.map((it) => [...it]).sort((p, q) => p[0] - q[0]);
+  for (let k = 1; k < sorted.length; k += 1) sorted[k][0] = Math.max(sorted[k][0], tidy(sorted[k - 1][0] + 0.01));
+  return sorted;
+}
+
+/** `A x + B z + C = 0` through the ends of a line, +1 above. */
+function coefficients(points) {
+  const [[px, pz], [qx, qz]] = fromLeft(points);
+  const [a, b] = [pz - qz, qx - px];
+  const length = Math.hypot(a, b);
+  const round = (it) => Number((it / length).toFixed(6));
+  return [round(a), round(b), round(-a * px - b * pz)];
+}
+
+/** The keys of the true boundary. */
+function truth(state) {
+  const { kind, points } = state;
+  const pairs = (those) => `[${those.map(([x, z]) => `[${x}, ${z}]`).join(', ')}]`;
+  const { width, height } = ground(state);
+  const isLine = kind === 'line';
+  const own = {
+    line: () => `line = [${coefficients(points).join(', ')}]`,
+    bend: () => `polyline = ${pairs(fromLeft(points))}`,
+    circle: () => `circle = [${points[0].join(', ')}, ${tidy(Math.hypot(points[1][0] - points[0][0], points[1][1] - points[0][1]))}]`,
+    shape: () => `polygon = ${pairs(points)}`,
+    coast: () => `coast = { height = ${tidy(height / 10)}, length = ${tidy(width / 5)}, seed = ${state.seed} }`,
+  }[kind]();
+  const drift = speed(state);
+  return state.moves ? `${own}, drift = ${isLine ? `[${drift}, 0]` : `[0, ${drift}]`}` : own;
+}
+
+/** How far a boundary moves with each motion, metres. */
+function speed(state) {
+  return tidy(ground(state).width / 2000);
+}
+
+/** Lengths of motions that there are. */
+const LENGTHS = 20;
+
+/** The longest motion, metres. */
+function reach(state) {
+  const { width, height } = ground(state);
+  const longer = Math.max(width, height);
+  return longer <= 100 ? 2 : tidy(LENGTHS * tidy(longer / 50 / LENGTHS));
+}
+
+function vehicle(state) {
+  const longest = reach(state);
+  const own = { unicycle: '', boat: ', sharpest = 0.8', car: `, radius = ${tidy(longest / 2)}` }[state.vehicle];
+  return `{ kind = "${state.vehicle}", reach = ${longest}, step = ${tidy(longest / LENGTHS)}${own} }`;
+}
+
+/** The places whose labels are known, with them. */
+function known(state) {
+  if (!state.told) return [];
+  return places(ground(state), TOLD).map((at) => [...at, side(state, at)]).filter((it) => it[2] !== null);
+}
+
+/** The name of the map in a scenario. */
+const MAP = 'area.geojson';
+
+/** The scenario file. */
+function toml(state) {
+  if (state.text !== null) return state.text;
+  const { width, height, origin } = ground(state);
+  const follows = state.planner === 'track';
+  const isSpill = state.kind === 'circle' || state.kind === 'shape';
+  const given = known(state);
+  const [x, z] = state.start;
+  const degrees = () => [origin[0] + z / METRES_A_DEGREE, origin[1] + x / METRES_A_DEGREE / Math.cos((origin[0] * Math.PI) / 180)].map((it) => it.toFixed(6));
+  const lines = [
+    '# Save this as scenario.toml, and run it: host-sim run scenario.toml --figure scenario.svg',
+    `algorithm = "${state.planner}"`,
+    `steps = ${follows ? 400 : state.planner === 'lawnmower' ? 200 : 60}`,
+    `seed = ${state.seed}`,
+    state.map !== null ? `area = { geojson = "${MAP}" }` : `area = { x = [0, ${width}], z = [0, ${height}] }`,
+    `vehicle = ${vehicle(state)}`,
+    ...(state.p === '1' ? [] : [`noise = { p = ${state.p} }   # a label is true with this probability`]),
+    ...(state.planner === 'lookahead' ? [`stop = { slope_arc_deg = ${state.p === '1' ? 0.5 : 5} }   # it is enough to know the slope so well`] : []),
+    ...(follows && state.moves ? [`front = { speed = ${speed(state)} }   # how far the front may move in a step`] : []),
+    ...(follows && given.length === 0 ? [`seek = { likely = "${isSpill ? 'spill' : 'coast'}" }`] : []),
+    state.map !== null ? `start = { lat = ${degrees()[0]}, lon = ${degrees()[1]} }` : `start = { x = ${x}, z = ${z} }`,
+    given.length === 0 ? 'oracle = []   # no label is known' : `oracle = [\n${given.map(([px, pz, label]) => `  { x = ${px}, z = ${pz}, label = ${label} },\n`).join('')}]`,
+    `truth = { ${truth(state)} }   # the planner is not told`,
+  ];
+  return `${lines.join('\n')}\n`;
+}
+
+/** The end of a link: all of it, compressed. */
+async function linked(state) {
+  const packed = new Blob([JSON.stringify(state)]).stream().pipeThrough(new CompressionStream('deflate-raw'));
+  const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
+  const text = btoa(Array.from(bytes, (it) => String.fromCharCode(it)).join(''));
+  return `#${text.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '')}`;
+}
+
+/** What the end of a link holds; null if it is none of ours. */
+async function unlinked(hash) {
+  try {
+    const text = atob(hash.slice(1).replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(text, (it) => it.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'));
+    return checked(JSON.parse(await new Response(stream).text()));
+  } catch {
+    return null;
+  }
+}
+
+/** Somebody else wrote it: only what this page could have made is taken. */
+function checked(found) {
+  const isPlace = (it) => Array.isArray(it) && it.length === 2 && it.every(Number.isFinite);
+  const among = (all, it) => all.some(([own]) => own === it);
+  const { kind, size, points, start, told, moves, vehicle: drives, p, planner, seed, map, text } = found;
+  const isText = (it) => it === null || (typeof it === 'string' && it.length < 2_000_000);
+  const isSound =
+    Object.hasOwn(KINDS, kind) && SIZES.includes(size) && Array.isArray(points) && points.length <= 500 && points.every(isPlace) && isPlace(start) &&
+    points.length >= { line: 2, bend: 2, circle: 2, shape: 3, coast: 0 }[kind] && among(VEHICLES, drives) && among(SENSORS, p) && among(PLANNERS, planner) &&
+    Number.isSafeInteger(seed) && seed >= 0 && isText(map) && isText(text);
+  if (!isSound) return null;
+  if (map !== null) mapped(map);
+  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, text };
+}
