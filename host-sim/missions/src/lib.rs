@@ -3,6 +3,10 @@
 //! It is a crate of its own because a build need optimise no more than this.
 
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    target_family = "wasm",
+    allow(clippy::zero_sized_map_values, reason = "no process has children there")
+)]
 
 pub mod campaign;
 pub mod fitting;

@@ -130,7 +130,7 @@ function editor(svg, { made, changed, done }) {
       const [px] = at([x, 0]);
       add(svg, 'text', { class: 'tick', x: px, y: margin.top + scale * field.height + 14, 'text-anchor': px > width - 16 ? 'end' : 'middle' }, figure(x, 0));
     }
-    for (const z of ticks(field.bottom, field.bottom + field.height, 4)) {
+    for (const z of ticks(field.bottom, field.bottom + field.height, 5)) {
       add(svg, 'text', { class: 'tick', x: left - 4, y: at([0, z])[1] + 4, 'text-anchor': 'end' }, figure(z, 0));
     }
     if (field.rings.length > 0) {

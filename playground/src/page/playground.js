@@ -147,10 +147,8 @@ async function takeFile(file) {
     const text = await file.text();
     if (form.isArea.checked) {
       const next = { ...begun('circle', made.seed), map: text };
-      const within = mapped(text);
-      const middle = afloat(within);
-      const radius = 0.06 * Math.min(within.width, within.height);
-      take({ ...next, vehicle: 'boat', start: middle, points: [middle.map((it, k) => tidy(it + (k === 0 ? 3 * radius : 0))), [tidy(middle[0] + 4 * radius), middle[1]]] });
+      const { middle, room, start } = afloat(mapped(text));
+      take({ ...next, vehicle: 'boat', start, points: [middle, [tidy(middle[0] + 0.6 * room), middle[1]]] });
     } else {
       const next = begun('shape', made.seed);
       take({ ...next, points: brought(text, ground(next)) });

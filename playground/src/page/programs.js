@@ -128,7 +128,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let vehicle = ${vehicle};
 ${planner}
     let mut agent = Agent::new(planner, Vehicle { drive, sensor }, start);
-    for _ in 0..${follows ? 400 : 60} {
+    for _ in 0..${follows ? 600 : 60} {
         match agent.step()? {
             Event::Step(step) => println!("{:?}", step.reading),
             Event::Stopped(reason) => {

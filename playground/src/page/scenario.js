@@ -70,17 +70,25 @@ function mapped(text) {
   return mapped.ground;
 }
 
-/** A place in the water of a map. */
-function afloat(field) {
-  const { left, bottom, width, height } = field;
-  const inside = ([x, z]) => field.rings.filter((ring) => isWithin(ring, [x, z])).length % 2 === 1;
-  const open = (at) => [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]].every(([x, z]) => inside([at[0] + x * 0.04 * width, at[1] + z * 0.04 * height]));
-  for (let k = 0; k < 400; k += 1) {
-    // Along the diagonals, from a corner.
-    const at = [left + width * (((k * 7) % 20) + 0.5) / 20, bottom + (height * (Math.floor(k / 20) + 0.5)) / 20];
-    if (open(at)) return at.map(tidy);
+/** In the water of a map: the place with the most room, that room, and a place to start from, far off. */
+function afloat({ left, bottom, width, height, rings: shores }) {
+  const sides = shores.flatMap((ring) => ring.map((from, k) => [from, ring[(k + 1) % ring.length]]));
+  const off = ([x, z]) => Math.min(...sides.map(([[px, pz], [qx, qz]]) => {
+    const square = (qx - px) ** 2 + (qz - pz) ** 2 || 1;
+    const along = Math.min(1, Math.max(0, ((x - px) * (qx - px) + (z - pz) * (qz - pz)) / square));
+    return Math.hypot(x - px - along * (qx - px), z - pz - along * (qz - pz));
+  }));
+  const spots = [];
+  for (let k = 0; k < 900; k += 1) {
+    const at = [left + (width * ((k % 30) + 0.5)) / 30, bottom + (height * (Math.floor(k / 30) + 0.5)) / 30];
+    if (shores.filter((ring) => isWithin(ring, at)).length % 2 === 1) spots.push({ at, room: off(at) });
   }
-  return [left + width / 2, bottom + height / 2].map(tidy);
+  if (spots.length === 0) throw new Error('found no water, expected an area with some breadth');
+  const middle = spots.reduce((best, it) => (it.room > best.room ? it : best));
+  const away = ({ at }) => Math.hypot(at[0] - middle.at[0], at[1] - middle.at[1]);
+  const roomy = spots.filter((it) => it.room > 0.4 * middle.room);
+  const start = roomy.reduce((best, it) => (away(it) > away(best) ? it : best));
+  return { middle: middle.at.map(tidy), room: middle.room, start: start.at.map(tidy) };
 }
 
 /** A shape from a file as corners in a field. Latitude and longitude are brought to its middle. */
@@ -220,7 +228,7 @@ function toml(state) {
   const lines = [
     '# Save this as scenario.toml, and run it: host-sim run scenario.toml --figure scenario.svg',
     `algorithm = "${state.planner}"`,
-    `steps = ${follows ? 400 : state.planner === 'lawnmower' ? 200 : 60}`,
+    `steps = ${follows ? 600 : state.planner === 'lawnmower' ? 200 : 60}`,
     `seed = ${state.seed}`,
     state.map !== null ? `area = { geojson = "${MAP}" }` : `area = { x = [0, ${width}], z = [0, ${height}] }`,
     `vehicle = ${vehicle(state)}`,

@@ -10,6 +10,7 @@ use std::process::Command;
 use std::sync::LazyLock;
 use std::{env, fs};
 
+use expect_test::expect_file;
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::mission::trace;
@@ -74,6 +75,58 @@ fn the_page_works_by_mouse_finger_and_keys() {
     }
     let Some(file) = built(WHAT) else { return };
     node(&["playground.mjs".as_ref(), file, file.parent().expect("a folder")]);
+}
+
+/// `UPDATE_EXPECT=1 cargo test -p tests playground::` draws it anew.
+#[test]
+fn the_picture_of_the_docs_is_what_the_page_shows() {
+    const WHAT: &str = "the picture of docs/try-it.md";
+    if let Some(missing) = page::missing() {
+        return build::skip(WHAT, &missing);
+    }
+    let Some(file) = built(WHAT) else { return };
+    let drawn = file.with_file_name("try-it.svg");
+    node(&["animation.mjs".as_ref(), file, &drawn]);
+    let drawn = fs::read_to_string(drawn).expect("a picture");
+    expect_file!["../../../docs/try-it.svg"].assert_eq(&drawn);
+}
+
+#[test]
+fn what_is_copied_is_flown_and_compiled() {
+    const WHAT: &str = "what the playground copies";
+    if !build::has_tool("node") {
+        return build::skip(WHAT, "node is not on the path");
+    }
+    let folder = build::scratch().join("copied");
+    let programs = folder.join("src/bin");
+    fs::create_dir_all(&programs).expect("folders");
+    node(&["programs.mjs".as_ref(), &folder]);
+    let of_kind = |ending: &str| -> Vec<PathBuf> {
+        let all = fs::read_dir(&folder).expect("a folder").map(|it| it.expect("an entry").path());
+        all.filter(|it| it.extension().is_some_and(|it| it == ending)).collect()
+    };
+    let scenarios = of_kind("scenario");
+    assert!(scenarios.len() > 10, "{scenarios:?}");
+    for file in scenarios {
+        let mission = scenario::read(&file, Overrides::default()).expect("a good scenario");
+        Recording::of(&mission).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
+    }
+    if !build::is_long("programs in Rust that the playground copies", "playground") {
+        return;
+    }
+    for file in of_kind("rs") {
+        fs::copy(&file, programs.join(file.file_name().expect("a name"))).expect("a file");
+    }
+    let core = root().canonicalize().expect("a path").join("planner-core");
+    let manifest = format!(
+        "[package]\nname = \"copied\"\nedition = \"2024\"\n[workspace]\n[dependencies]\nplanner-core.path = {core:?}\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");
+    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock");
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(&folder).args(["check", "--quiet", "--offline"]);
+    let run = cargo.env("RUSTFLAGS", "-D warnings").output().expect("cargo starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
 }
 
 fn built(what: &str) -> Option<&'static Path> {
