@@ -115,6 +115,12 @@ async function byMouse() {
   const area = await after(page, () => page.setInputFiles('#file', { name: 'area.geojson', mimeType: 'application/json', buffer: lake }));
   check(area.refused === '' && (await toml(page)).includes('geojson = '), `an area from a file: ${area.refused}`);
   await looks(page, 'lake 1280');
+  const grid = `ncols 40\nnrows 32\nxllcorner 0\nyllcorner 0\ncellsize 2.5\n${Array.from({ length: 32 }, (_, row) => Array.from({ length: 40 }, (_, column) => 20 - Math.hypot(2.5 * column - 60, 40 - 2.5 * row)).join(' ')).join('\n')}`;
+  const raster = await after(page, () => page.setInputFiles('#file', { name: 'Hill.ASC', mimeType: 'text/plain', buffer: Buffer.from(grid) }));
+  check(raster.refused === '' && raster.said.includes('In truth it lies') && (await toml(page)).includes('raster = "truth.asc", threshold = 0'), `a raster: ${raster.said}${raster.refused}`);
+  const higher = await after(page, async () => { await page.fill('[name=threshold]', '8'); await page.press('[name=threshold]', 'Tab'); });
+  check(higher.refused === '' && (await toml(page)).includes('threshold = 8'), `a threshold: ${higher.said}${higher.refused}`);
+  await looks(page, 'raster 1280');
   const none = await after(page, () => page.setInputFiles('#file', { name: 'none.json', mimeType: 'application/json', buffer: Buffer.from('{"type": "Point"}') }));
   check(none.refused.includes('none.json: found no polygon'), `a file without polygons: ${none.refused}`);
   await page.evaluate(() => { document.getElementById('text-of').open = true; });

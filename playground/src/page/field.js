@@ -1,7 +1,8 @@
 // The field: what is true, drawn with mouse, finger or keys.
 
-/** An editor over a drawing. `made` returns what is made, `changed` is told of another, `done` when a hand is lifted. */
-function editor(svg, { made, changed, done }) {
+/** An editor over a drawing. `made` returns what is made, `seen` the boundary that the
+ *  simulator has seen, `changed` is told of another, `done` when a hand is lifted. */
+function editor(svg, { made, changed, done, seen }) {
   let view = null;
   let drag = null;
   /** The point that gets the focus when it is drawn anew, if it is another. */
@@ -15,7 +16,7 @@ function editor(svg, { made, changed, done }) {
       circle: ['Middle of the circle', 'Rim of the circle'],
     }[kind];
     const word = kind === 'shape' ? 'Corner' : 'Point';
-    const own = kind === 'coast' ? [] : points.map((at, k) => ({ key: String(k), at, name: names?.[k] ?? `${word} ${k + 1} of ${points.length}` }));
+    const own = kind === 'coast' || made().raster !== null ? [] : points.map((at, k) => ({ key: String(k), at, name: names?.[k] ?? `${word} ${k + 1} of ${points.length}` }));
     return [...own, { key: 'start', at: start, name: 'Where the robot starts' }];
   };
 
@@ -61,7 +62,7 @@ function editor(svg, { made, changed, done }) {
   svg.addEventListener('pointerdown', (event) => {
     if (event.button !== 0 || drag !== null) return;
     const handle = event.target.closest('[data-key]');
-    if (handle === null && made().kind === 'coast') return;
+    if (handle === null && (made().kind === 'coast' || made().raster !== null)) return;
     drag = { key: handle?.dataset.key ?? null, way: [place(event)], id: event.pointerId };
     svg.setPointerCapture(event.pointerId);
     handle?.focus({ preventScroll: true });
@@ -137,7 +138,7 @@ function editor(svg, { made, changed, done }) {
       const land = [[[field.left, field.bottom], [field.left + field.width, field.bottom], [field.left + field.width, field.bottom + field.height], [field.left, field.bottom + field.height]], ...field.rings];
       add(inner, 'path', { class: 'keep-out', 'fill-rule': 'evenodd', d: land.map((ring) => through(ring.map(at), true)).join('') });
     }
-    truthOn(inner, state, at);
+    truthOn(inner, state, at, seen());
     for (const [x, z, label] of known(state)) symbol(svg, at([x, z]), label, 5);
     for (const { key, at: where, name } of handles()) {
       const [x, y] = at(where);
@@ -155,12 +156,11 @@ function editor(svg, { made, changed, done }) {
 }
 
 /** The boundary as it is drawn, and the ground on its +1 side. */
-function truthOn(svg, state, at) {
+function truthOn(svg, state, at, seen) {
   const { kind, points } = state;
   const { left, bottom, width, height } = ground(state);
-  if (kind === 'coast') {
-    const [x, y] = at([left + width / 2, bottom + height / 2]);
-    add(svg, 'text', { class: 'tick', x, y, 'text-anchor': 'middle' }, 'Chance draws a coast here');
+  if (kind === 'coast' || state.raster !== null) {
+    for (const way of seen) add(svg, 'path', { class: 'truth', d: through(way.map(at)) });
     return;
   }
   if (kind === 'circle') {

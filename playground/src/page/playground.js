@@ -8,6 +8,8 @@ let worker = null;
 /** Set while a mission is flown: what is to be told of it. */
 let flying = null;
 let isOpen = false;
+/** The boundary of the last mission. */
+let boundary = [];
 
 /** What the worker does with its messages. */
 const WORK = `${part('client').textContent}
@@ -15,7 +17,7 @@ let own = null;
 onmessage = async ({ data: { module, number, text, files } }) => {
   try {
     own ??= await simulator(module);
-    for (const [name, content] of Object.entries(files)) own.hand(name, new TextEncoder().encode(content));
+    for (const [name, data] of Object.entries(files)) own.hand(name, Uint8Array.from(atob(data), (it) => it.charCodeAt(0)));
     const said = own.run(text);
     postMessage({ number, ...said, chapter: said.isFlown ? own.scenes() : null });
   } catch (error) {
@@ -40,7 +42,7 @@ async function fly() {
     worker.onmessage = ({ data }) => landed(data);
     worker.onerror = (event) => landed({ number: flying?.number, isFlown: false, notes: `the simulator does not start: ${event.message}`, chapter: null });
   }
-  worker.postMessage({ module, number, text: toml(made), files: made.map === null ? {} : { [MAP]: made.map } });
+  worker.postMessage({ module, number, text: toml(made), files: files(made) });
 }
 
 /** Ends a mission that is under way. */
@@ -58,6 +60,8 @@ function landed({ number, isFlown, notes, chapter }) {
   acts.stop.hidden = true;
   if (!isFlown) return show('', notes);
   present(chapter);
+  boundary = chapter.flights[0].boundary.flatMap((it) => it.ways);
+  field.draw();
   const { scenes } = chapter.flights[0];
   const of = (heading) => scenes.at(-1).told.find((it) => it.of === heading)?.text ?? '';
   const truly = of('Map').split('\n').find((it) => it.startsWith('In truth')) ?? '';
@@ -89,16 +93,19 @@ function present(chapter) {
 function change(next) {
   made = next;
   field.draw();
-  for (const [kind, button] of Object.entries(kinds)) button.setAttribute('aria-pressed', String(kind === made.kind));
-  part('hint').textContent = KINDS[made.kind].hint;
+  for (const [kind, button] of Object.entries(kinds)) button.setAttribute('aria-pressed', String(kind === made.kind && made.raster === null));
+  part('hint').textContent = made.raster === null ? KINDS[made.kind].hint : 'The raster is +1 where its value is the threshold or more.';
   for (const name of ['planner', 'vehicle', 'p', 'size', 'seed']) form[name].value = String(made[name]);
-  form.told.checked = made.told && made.kind !== 'coast' && made.map === null;
-  form.told.disabled = made.kind === 'coast' || made.map !== null;
+  form.told.checked = made.told && !isHidden(made);
+  form.told.disabled = isHidden(made);
+  part('threshold').hidden = made.raster === null;
+  form.threshold.value = String(made.raster?.threshold ?? 0);
   form.size.disabled = made.map !== null;
   form.moves.checked = made.moves;
   part('text').value = toml(made);
-  part('beside').hidden = made.map === null;
-  part('beside').textContent = `Save the map beside it, as ${MAP}.`;
+  const beside = Object.keys(files(made));
+  part('beside').hidden = beside.length === 0;
+  part('beside').textContent = `Save your file beside it, as ${beside.join(', ')}.`;
 }
 
 /** The same, and flies it. */
@@ -129,6 +136,7 @@ form.addEventListener('change', ({ target }) => {
     const scaled = ([x, z]) => [tidy((x * to.width) / from.width), tidy((z * to.height) / from.height)];
     Object.assign(next, { points: made.points.map(scaled), start: scaled(made.start) });
   }
+  if (name === 'threshold') Object.assign(next, { raster: { ...made.raster, threshold: Number(value) || 0 }, threshold: undefined });
   // What moves is no straight line that stays.
   if (name === 'moves' && isChecked) Object.assign(next, { planner: 'track' });
   take(next);
@@ -140,10 +148,20 @@ acts.stop.addEventListener('click', () => { halt(); show('Stopped.'); });
 acts.again.addEventListener('click', () => take({ ...made, text: null, seed: made.seed + 1 }));
 acts['run-text'].addEventListener('click', () => take({ ...made, text: part('text').value }));
 
+/** The most bytes of a raster: a link holds them. */
+const MOST_BYTES = 1_000_000;
+
 /** Takes a file, dropped or chosen. */
 async function takeFile(file) {
   if (!file) return;
   try {
+    const ending = file.name.split('.').at(-1).toLowerCase();
+    if (RASTERS.test(`truth.${ending}`)) {
+      const bytes = new Uint8Array(await file.arrayBuffer());
+      if (bytes.length > MOST_BYTES) throw new Error(`found ${bytes.length} bytes, expected ${MOST_BYTES} at most`);
+      const raster = { name: `truth.${ending}`, data: btoa(Array.from(bytes, (it) => String.fromCharCode(it)).join('')), threshold: ending === 'png' ? 128 : 0 };
+      return take({ ...begun('shape', made.seed), raster });
+    }
     const text = await file.text();
     if (form.isArea.checked) {
       const next = { ...begun('circle', made.seed), map: text };
@@ -187,7 +205,7 @@ for (const button of document.querySelectorAll('[data-copy]')) {
   });
 }
 
-const field = editor(part('field'), { made: () => made, changed: (next) => change({ ...next, text: null }), done: () => fly() });
+const field = editor(part('field'), { made: () => made, changed: (next) => change({ ...next, text: null }), done: () => fly(), seen: () => boundary });
 new ResizeObserver(() => field.draw()).observe(part('field').parentElement);
 async function begin() {
   const found = location.hash.length > 1 ? await unlinked(location.hash) : null;

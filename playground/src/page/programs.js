@@ -1,13 +1,14 @@
 // The same as a program: in Python with the simulator, in Rust with the planner for a robot of one's own.
 
 function python(state) {
-  const file = (name, text) => `Path("${name}").write_text("""${text.replaceAll('\\', '\\\\').replaceAll('"""', '\\"""')}""")`;
+  const text = `\n${toml(state)}`.replaceAll('\\', '\\\\').replaceAll('"""', '\\"""');
+  const beside = Object.entries(files(state)).map(([name, data]) => `Path("${name}").write_bytes(b64decode("${data}"))\n`);
   return `# pip install ./python, in a copy of the repository
-from pathlib import Path
+${beside.length > 0 ? 'from base64 import b64decode\n' : ''}from pathlib import Path
 
 import boundary_planner as b
 
-${state.map === null ? '' : `${file(MAP, state.map)}\n`}${file('scenario.toml', `\n${toml(state)}`)}
+${beside.join('')}Path("scenario.toml").write_text("""${text}""")
 flight = b.Mission("scenario.toml").run()
 print(flight.end["reason"], flight.end)
 Path("scenario.html").write_text(flight.html())   # a page to step through
@@ -24,13 +25,17 @@ function pair([x, z]) {
 }
 
 /** Whether a place is on the +1 side, in Rust. */
-function rustSide({ kind, points, map }) {
+function rustSide(state) {
+  const { kind, points } = state;
+  if (isHidden(state)) {
+    return '    // Read your sensor here. This stands for it: another coast.\n    at.y > 40.0 + 6.0 * (at.x / 15.0).sin()';
+  }
   if (kind === 'circle') {
     const [[x, z], rim] = points;
     return `    // Read your sensor here. This stands for it: a disc.
     (at.x - ${float(x)}).hypot(at.y - ${float(z)}) < ${float(tidy(Math.hypot(rim[0] - x, rim[1] - z)))}`;
   }
-  if (kind === 'shape' && map === null) {
+  if (kind === 'shape') {
     return `    // Read your sensor here. This stands for it: a polygon.
     let corners = [${points.map(pair).join(', ')}];
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
@@ -38,9 +43,6 @@ function rustSide({ kind, points, map }) {
         (*pz <= at.y) != (*qz <= at.y) && px + (at.y - pz) / (qz - pz) * (qx - px) < at.x
     });
     crossed.count() % 2 == 1`;
-  }
-  if (kind === 'coast' || map !== null) {
-    return '    // Read your sensor here. This stands for it: another coast.\n    at.y > 40.0 + 6.0 * (at.x / 15.0).sin()';
   }
   const sorted = fromLeft(points);
   return `    // Read your sensor here. This stands for it: above a way from left to right.

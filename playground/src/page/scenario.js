@@ -6,10 +6,10 @@ const KINDS = {
   bend: { name: 'Bend', hint: 'Drag from left to right to draw another coast, or move its points.', size: '100 x 80', points: [[0, 0.3], [0.25, 0.62], [0.5, 0.5], [0.72, 0.7], [1, 0.45]] },
   circle: { name: 'Circle', hint: 'Drag from the middle to the rim to draw another spill, or move both.', size: '100 x 80', points: [[0.6, 0.56], [0.75, 0.56]] },
   shape: { name: 'Shape', hint: 'Drag all the way round a shape to draw it, or move its corners.', size: '100 x 80', points: [[0.42, 0.4], [0.62, 0.35], [0.8, 0.5], [0.74, 0.72], [0.6, 0.68], [0.52, 0.8], [0.4, 0.66]] },
-  coast: { name: 'Any coast', hint: 'A coast that chance draws. Run with other luck for another.', size: '100 x 80', points: [] },
+  coast: { name: 'Any coast', hint: 'Luck draws this coast. Run with other luck for another.', size: '100 x 80', points: [] },
 };
-const PLANNERS = [['lookahead', 'Straight lines: two labels ahead'], ['cfc', 'Straight lines: Algorithm 1'], ['scc', 'Straight lines: Algorithm 2'], ['track', 'Fronts: finds and follows'], ['lawnmower', 'Parallel tracks, to compare'], ['random', 'Random walk, to compare']];
-const VEHICLES = [['unicycle', 'Rover: turns on the spot'], ['boat', 'Boat: turns as it drives'], ['car', 'Car: drives arcs']];
+const PLANNERS = [['lookahead', 'Look-ahead: a line'], ['cfc', 'Algorithm 1: a line'], ['scc', 'Algorithm 2: a line'], ['track', 'Track: a front'], ['lawnmower', 'Parallel tracks'], ['random', 'A random walk']];
+const VEHICLES = [['unicycle', 'Rover'], ['boat', 'Boat'], ['car', 'Car']];
 const SENSORS = [['1', 'always right'], ['0.98', 'right in 98 of 100'], ['0.95', 'right in 95 of 100'], ['0.9', 'right in 9 of 10'], ['0.8', 'right in 8 of 10']];
 const SIZES = ['20 x 20', '50 x 50', '100 x 80', '200 x 150', '800 x 500'];
 /** Where the four labels are known, and where the robot begins. */
@@ -21,7 +21,7 @@ function begun(kind, seed = 1) {
   const { size, points } = KINDS[kind];
   const isLine = kind === 'line';
   const field = ground({ size, map: null });
-  return { kind, size, points: places(field, points), start: places(field, [START])[0], told: isLine, moves: false, vehicle: 'unicycle', p: isLine ? '1' : '0.95', planner: isLine ? 'lookahead' : 'track', seed, map: null, text: null };
+  return { kind, size, points: places(field, points), start: places(field, [START])[0], told: isLine, moves: false, vehicle: 'unicycle', p: isLine ? '1' : '0.95', planner: isLine ? 'lookahead' : 'track', seed, map: null, raster: null, text: null };
 }
 
 /** Where a field lies, metres; of a map also its rings, and the latitude and longitude of the origin. */
@@ -137,10 +137,15 @@ function tidy(metres) {
   return Math.round(metres * 1000) / 1000;
 }
 
+/** Whether only the simulator knows which side a place is on. */
+function isHidden({ kind, map, raster }) {
+  return map !== null || raster !== null || kind === 'coast';
+}
+
 /** Which side a place is on; null where only the simulator knows. */
 function side(state, [x, z]) {
   const { kind, points } = state;
-  if (state.map !== null || kind === 'coast') return null;
+  if (isHidden(state)) return null;
   if (kind === 'circle') {
     const [middle, rim] = points;
     return Math.hypot(x - middle[0], z - middle[1]) < Math.hypot(rim[0] - middle[0], rim[1] - middle[1]) ? 1 : -1;
@@ -174,8 +179,9 @@ function truth(state) {
   const { kind, points } = state;
   const pairs = (those) => `[${those.map(([x, z]) => `[${x}, ${z}]`).join(', ')}]`;
   const { width, height } = ground(state);
-  const isLine = kind === 'line';
-  const own = {
+  const isLine = kind === 'line' && state.raster === null;
+  const ofRaster = ({ name, threshold }) => `raster = "${name}", threshold = ${threshold}`;
+  const own = state.raster !== null ? ofRaster(state.raster) : {
     line: () => `line = [${coefficients(points).join(', ')}]`,
     bend: () => `polyline = ${pairs(fromLeft(points))}`,
     circle: () => `circle = [${points[0].join(', ')}, ${tidy(Math.hypot(points[1][0] - points[0][0], points[1][1] - points[0][1]))}]`,
@@ -213,8 +219,17 @@ function known(state) {
   return places(ground(state), TOLD).map((at) => [...at, side(state, at)]).filter((it) => it[2] !== null);
 }
 
-/** The name of the map in a scenario. */
+/** The name of the map in a scenario, and names that rasters have there. */
 const MAP = 'area.geojson';
+const RASTERS = /^truth\.(png|asc|tiff?)$/;
+
+/** The files beside a scenario, in base 64. */
+function files({ map, raster }) {
+  const all = {};
+  if (map !== null) all[MAP] = btoa(Array.from(new TextEncoder().encode(map), (it) => String.fromCharCode(it)).join(''));
+  if (raster !== null) all[raster.name] = raster.data;
+  return all;
+}
 
 /** The scenario file. */
 function toml(state) {
@@ -267,13 +282,14 @@ async function unlinked(hash) {
 function checked(found) {
   const isPlace = (it) => Array.isArray(it) && it.length === 2 && it.every(Number.isFinite);
   const among = (all, it) => all.some(([own]) => own === it);
-  const { kind, size, points, start, told, moves, vehicle: drives, p, planner, seed, map, text } = found;
+  const { kind, size, points, start, told, moves, vehicle: drives, p, planner, seed, map, raster, text } = found;
   const isText = (it) => it === null || (typeof it === 'string' && it.length < 2_000_000);
+  const isRaster = raster === null || (RASTERS.test(raster.name) && isText(raster.data) && Number.isFinite(raster.threshold));
   const isSound =
     Object.hasOwn(KINDS, kind) && SIZES.includes(size) && Array.isArray(points) && points.length <= 500 && points.every(isPlace) && isPlace(start) &&
     points.length >= { line: 2, bend: 2, circle: 2, shape: 3, coast: 0 }[kind] && among(VEHICLES, drives) && among(SENSORS, p) && among(PLANNERS, planner) &&
-    Number.isSafeInteger(seed) && seed >= 0 && isText(map) && isText(text);
+    Number.isSafeInteger(seed) && seed >= 0 && isText(map) && isText(text) && isRaster;
   if (!isSound) return null;
   if (map !== null) mapped(map);
-  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, text };
+  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, raster: raster && { name: raster.name, data: raster.data, threshold: raster.threshold }, text };
 }
