@@ -1,8 +1,8 @@
 //! What `idle` runs: asks for a mission, flies it, logs it, and asks for the next.
 
 use planner_core::link::delivery::LinkError;
-use planner_core::link::message::{MissionArea, MissionEnd, Setup};
-use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
+use planner_core::link::message::{MissionEnd, Setup};
+use planner_core::link::station::{AllLabels, Charts, Flown, Guards, Station, Tracks, Watch};
 use planner_core::watch::Alarm;
 use planner_core::{AnySight, AnyVehicle, LocalLine, PinSensor, Reading, Step};
 use stm32f4xx_hal::gpio::{Input, PB1};
@@ -19,6 +19,9 @@ const DOUBTFUL_SAMPLES: usize = 36;
 /// All hypotheses that 32 labels can leave.
 const HYPOTHESES: usize = 529;
 
+/// Words of cells that a chart can have: those of 256 rows and columns.
+const CELL_WORDS: usize = 2_048;
+
 /// The parts of the board that a mission uses.
 pub(crate) struct Board {
     pub(crate) station: Station<Serial, PinSensor<PB1<Input>>>,
@@ -32,7 +35,8 @@ impl Board {
         type Planners = Tracks<Guards<OfLines>>;
         loop {
             // How it ended is in the log.
-            let _ = self.station.mission::<Planners, AnyVehicle, MissionArea>(&mut self.deck);
+            let _ =
+                self.station.mission::<Planners, AnyVehicle, Charts<CELL_WORDS>>(&mut self.deck);
         }
     }
 }

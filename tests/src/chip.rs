@@ -7,8 +7,8 @@ use host_sim::hil::faults::Faults;
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;
 use planner_core::link::delivery::{Link, LinkError, Port};
-use planner_core::link::message::{self, ClockRate, LabelSource, MissionArea};
-use planner_core::link::station::{AllLabels, Flown, Guards, Station, Tracks, Watch};
+use planner_core::link::message::{self, ClockRate, LabelSource};
+use planner_core::link::station::{AllLabels, Charts, Flown, Guards, Station, Tracks, Watch};
 use planner_core::robot::LabelSensor;
 use planner_core::{AnySight, AnyVehicle, Reading};
 
@@ -107,7 +107,7 @@ impl Watch for Hears {
 pub fn fly(chip: &mut Chip<'_>, setup: &message::Setup) -> Result<Flown, LinkError> {
     type OfLines = AllLabels<68, 36, 529, AnySight>;
     type Planners = Tracks<Guards<OfLines>>;
-    chip.fly_with::<Planners, AnyVehicle, MissionArea>(setup, &mut Hears)
+    chip.fly_with::<Planners, AnyVehicle, Charts<2048>>(setup, &mut Hears)
 }
 
 /// A wire with a player at its end.

@@ -3,7 +3,7 @@
 //! - Adversarial sites, and slow twins: the version space's here, others in [`twins`].
 //! - Missions as a chip may be asked to fly them ([`missions`]), and such in which everything is drawn at random
 //!   ([`anything`]).
-//! - Missions that follow a front ([`fronts`]).
+//! - Missions that follow a front ([`fronts`]), and missions in lakes from maps ([`lakes`]).
 //! - A chip in the test's own thread ([`chip`]), and a wire that spoils frames ([`wire`]).
 //! - Ensembles of missions and their figures ([`ensemble`]), and vehicles ([`vehicles`]).
 //! - The command line in the test's own process ([`command`]).
@@ -25,6 +25,7 @@ pub mod command;
 pub mod ensemble;
 pub mod fronts;
 pub mod known;
+pub mod lakes;
 pub mod missions;
 pub mod terrain;
 pub mod twins;

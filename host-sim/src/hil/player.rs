@@ -13,9 +13,10 @@ use anyhow::{Context as _, Result, anyhow, bail};
 use planner_core::link::delivery::{Heard, Hello, Responder};
 use planner_core::link::frame::Frame;
 use planner_core::link::message::{
-    self, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply, Request, Setup, Took,
+    self, ChartPiece, ChartShape, ClockRate, EndReason, LabelSource, MissionArea, PROTOCOL, Reply,
+    Request, Setup, Took,
 };
-use planner_core::{Estimates, FrontState, Motion, Plan, Pose, Reading, Site, Stage, Step};
+use planner_core::{Chart, Estimates, FrontState, Motion, Plan, Pose, Reading, Site, Stage, Step};
 
 use crate::hil::logbook::{Logbook, Sensed};
 use crate::hil::setup;
@@ -39,6 +40,8 @@ pub struct Player {
     setup: Setup,
     /// The whole area. The setup has only its bounds.
     area: MissionArea,
+    /// What is open in it, if it is from a map.
+    chart: Option<Chart<'static>>,
     responder: Responder,
     robot: Box<dyn Robot>,
     /// Where it is.
@@ -112,6 +115,7 @@ impl Player {
         Ok(Self {
             setup,
             area: mission.config.area,
+            chart: mission.lake.as_ref().map(|it| it.chart),
             responder: Responder::new(seed),
             robot: mission.robot(),
             pose: mission.start,
@@ -231,7 +235,11 @@ impl Player {
         match request {
             Request::Hello { .. } => unreachable!("a hello is welcomed"),
             // These begin a session: the chip has forgotten the last one.
-            Request::Outline(_) | Request::Ready(_) | Request::Declined(_)
+            Request::Outline(_)
+            | Request::Chart
+            | Request::Cells(_)
+            | Request::Ready(_)
+            | Request::Declined(_)
                 if self.clock.is_some() && !self.resumes =>
             {
                 bail!("the board restarted or gave up after step {}", self.steps())
@@ -240,6 +248,18 @@ impl Player {
                 Some(outline) => Ok(Reply::Outline(outline)),
                 None => bail!("the board asks for outline {number}, which there is not"),
             },
+            Request::Chart => match &self.chart {
+                Some(chart) => Ok(Reply::Chart(ChartShape::of(chart))),
+                None => bail!("the board asks for a chart, which there is not"),
+            },
+            Request::Cells(number) => {
+                match self.chart.and_then(|chart| ChartPiece::of(&chart, number)) {
+                    Some(piece) => Ok(Reply::Cells(piece)),
+                    None => {
+                        bail!("the board asks for piece {number} of a chart, which there is not")
+                    }
+                }
+            }
             Request::Declined(declined) => {
                 self.outcome = Some(Err(setup::declined(declined, &self.setup, self.way.readings)));
                 Ok(Reply::Noted)

@@ -3,7 +3,8 @@
 use anyhow::{Result, anyhow, bail};
 use heapless::Vec as BoundedVec;
 use planner_core::link::message::{
-    self, Capacity, DeclinedError, LabelSource, MissionArea, Outline, PROTOCOL, Settings, Setup,
+    self, CHARTED, Capacity, ChartFault, DeclinedError, LabelSource, MissionArea, Outline,
+    PROTOCOL, Settings, Setup,
 };
 use planner_core::parts::EVALUATIONS;
 use planner_core::{AnySight, FrontStretch, Seeking, Workspace as _};
@@ -35,9 +36,6 @@ fn check_sensor(mission: &Mission, labels: LabelSource) -> Result<()> {
 /// # Errors
 /// When no chip can fly such a mission.
 pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
-    if mission.lake.is_some() {
-        return wrong("area", "a map with hil", "metres: cells are not sent to a board");
-    }
     if mission.goal.is_some() && !mission.audits {
         bail!("stop.audit: found false, expected true: a board always audits");
     }
@@ -102,7 +100,8 @@ pub fn setup(mission: &Mission, labels: LabelSource) -> Result<Setup> {
     } = mission;
     let config = Settings { area: area.bounds(), weight, crossing, following, tolerance };
     let is_plain = area.sides().next().is_none() && area.hulls().next().is_none();
-    let keep_outs = (!is_plain).then(|| area.hulls().count() as u8);
+    let keep_outs = (!is_plain || mission.lake.is_some())
+        .then(|| area.hulls().count() as u8 + if mission.lake.is_some() { CHARTED } else { 0 });
     let (protocol, vehicle, steps) = (PROTOCOL, mission.vehicle.into(), mission.steps as u16);
     Ok(Setup {
         protocol,
@@ -175,6 +174,12 @@ pub(crate) fn declined(declined: DeclinedError, setup: &Setup, readings: u32) ->
         },
         DeclinedError::Given(error) => anyhow!("oracle: declined by the board: {error}"),
         DeclinedError::Vehicle(why) => anyhow!("vehicle: declined by the board: expected {why}"),
+        DeclinedError::Chart(ChartFault::Room(words)) => {
+            anyhow!(
+                "area.cells: found more cells than the board has room for, expected {words} words of 32 at most"
+            )
+        }
+        DeclinedError::Chart(_) => anyhow!("area.geojson: declined by the board: {declined}"),
         DeclinedError::Area => anyhow!("area: declined by the board: {declined}"),
         DeclinedError::Tolerance => anyhow!("tolerance: declined by the board: {declined}"),
         DeclinedError::Goal => anyhow!("stop: declined by the board: {declined}"),

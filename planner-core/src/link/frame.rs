@@ -42,7 +42,7 @@ impl<M: Message> Envelope<M> {
     }
 }
 
-static CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+pub(super) static CHECK: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// A message as it goes over the wire.
 #[derive(Clone, Debug, Default)]

@@ -8,6 +8,10 @@
 //!  | <------------------------- Setup { .. } --  |  the mission
 //!  | -- Outline(number) ---------------------->  |
 //!  | <----------------------- Outline { .. } --  |  as often as the area has any, if it is no rectangle
+//!  | -- Chart ------------------------------->  |  if the area has a chart
+//!  | <------------------------- Chart { .. } --  |
+//!  | -- Cells(number) ------------------------>  |
+//!  | <------------------------- Cells { .. } --  |  as often as the chart has pieces
 //!  | -- Ready(Accepted), or Declined --------->  |
 //!  | <-------------------------------- Noted --  |
 //!  | -- Move { motion, what came of the last } ->  |
@@ -43,17 +47,23 @@ use crate::motion::dynamics::Pose;
 use crate::planner::front_state::FrontState;
 use crate::planner::{Motion, StopReason};
 
+#[cfg(feature = "charts")]
+pub use crate::link::chart::{CELL_BYTES, ChartFault, ChartPiece, ChartShape};
 pub use crate::link::setup::{Algorithm, Capacity, LabelSource, MOST_GIVEN, Settings, Setup};
 
 /// The version of this protocol. The layout of [`Request::Hello`] and of its frame is that of every
 /// version from 2 on.
-pub const PROTOCOL: u16 = 11;
+pub const PROTOCOL: u16 = 12;
 
 /// Corners that an area can have, and each keep-out in it.
 pub const MOST_CORNERS: usize = 8;
 
 /// Keep-outs that a mission can have.
 pub const MOST_KEEP_OUTS: usize = 8;
+
+/// If the area of a mission has a [chart](crate::Chart), [`Setup::keep_outs`] is so much more than the number of keep-outs.
+/// A chip without charts declines that many, and needs no code for charts.
+pub const CHARTED: u8 = 128;
 
 /// Where the motions of a mission may go.
 pub type MissionArea = PolygonArea<MOST_CORNERS, MOST_KEEP_OUTS>;
@@ -110,6 +120,13 @@ pub enum Request {
     },
     /// To take note of what is known of the front after a motion. Only a planner that follows fronts asks this.
     Front(FrontState),
+    // These are the last, as a chip without charts does not have them.
+    /// For the shape of the area's chart, before it begins.
+    #[cfg(feature = "charts")]
+    Chart,
+    /// For a piece of the area's chart, before it begins: piece 0 has the first words of the cells.
+    #[cfg(feature = "charts")]
+    Cells(u8),
 }
 
 /// What the vehicle answers.
@@ -148,6 +165,13 @@ pub enum Reply {
         /// with [`Reply::Arrived`].
         reading: Option<Reading>,
     },
+    // These are the last, as a chip without charts does not have them.
+    /// To [`Request::Chart`].
+    #[cfg(feature = "charts")]
+    Chart(ChartShape),
+    /// To [`Request::Cells`].
+    #[cfg(feature = "charts")]
+    Cells(ChartPiece),
 }
 
 /// What the chip accepts, and what its figures mean.
@@ -195,6 +219,9 @@ pub enum DeclinedError {
     Goal,
     /// The chip looks for labels within one motion, so they have no price.
     Price,
+    /// The area's chart has not arrived.
+    #[cfg(feature = "charts")]
+    Chart(ChartFault),
 }
 
 impl core::fmt::Display for DeclinedError {
@@ -209,6 +236,8 @@ impl core::fmt::Display for DeclinedError {
             Self::Tolerance => f.write_str("the tolerance leaves nothing of the area"),
             Self::Labels => f.write_str("the chip has no label sensor"),
             Self::Vehicle(why) => why.fmt(f),
+            #[cfg(feature = "charts")]
+            Self::Chart(why) => why.fmt(f),
             Self::Area => f.write_str("the chip cannot plan in this area"),
             Self::Goal => f.write_str("the chip cannot check this goal"),
             Self::Price => {

@@ -8,6 +8,8 @@
 //! | [`delivery`] | how a message is delivered exactly once |
 //! | [`station`] | the chip's side of a mission |
 
+#[cfg(feature = "charts")]
+mod chart;
 pub mod delivery;
 pub mod frame;
 pub mod message;

@@ -60,7 +60,8 @@ pub struct Setup {
     /// What the mission fixes beforehand.
     pub config: Settings,
     /// The number of keep-outs, if the area is more than the rectangle of [`Settings::area`]. Then the chip asks for
-    /// [outlines](crate::link::message::Request::Outline).
+    /// [outlines](crate::link::message::Request::Outline). It is [`CHARTED`](crate::link::message::CHARTED) more if the area
+    /// has a chart. Then the chip asks for that too.
     pub keep_outs: Option<u8>,
     /// The parameters of the vehicle. The [chip](Setup::terms) decides whether it supports such a vehicle. It may
     /// support a single kind.

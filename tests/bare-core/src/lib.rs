@@ -10,10 +10,11 @@
 //! | `standard` | all algorithms | 32 labels beside 4 given, all 529 hypotheses |
 //! | `large` | all algorithms | 64 labels beside 4 given, all 2,081 hypotheses |
 //! | `vehicles` | all algorithms, all vehicles | as `standard` |
+//! | `lakes` | all algorithms, the follower of fronts, all vehicles, on charts of 128 x 128 cells | as `standard` |
 //! | `track` | the follower of fronts | a curve, any number of labels |
 //! | `panicking` | nothing | a panic: that of an index |
 //!
-//! All but `vehicles` have the unicycle alone. It is built for Arm, and for RISC-V (`riscv32imac`) as QEMU's `virt`.
+//! All but `vehicles` and `lakes` have the unicycle alone. It is built for Arm, and for RISC-V (`riscv32imac`) as QEMU's `virt`.
 //! An emulator, or QEMU, plays the world at its standard streams; at the end of the input it exits.
 //! Ticks are instructions: on Arm by the host's count in the tests' emulator, on RISC-V by the core's own.
 
@@ -41,6 +42,10 @@ macro_rules! flies {
                 link::message::MissionArea,
                 link::station::{AllLabels, CfcAlone, Guards, Tracks, TrueLabels},
             };
+
+            #[cfg(feature = "charts")]
+            #[allow(unused_imports, reason = "one program names it")]
+            use planner_core::link::station::Charts;
 
             $crate::fly::<$planners, $vehicle, $area>()
         }

@@ -2,10 +2,7 @@
 //! water, by the harness's own geometry, and missions go on to an end that is true.
 
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::path::Path;
 
-use host_sim::mission::definition::Mission;
 use host_sim::mission::scenario::{self, Overrides};
 use nalgebra::Point2;
 use planner_core::Site;
@@ -13,90 +10,22 @@ use planner_core::lattice::UNITS_PER_METRE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use tests::anything::flight::{Finding, fly};
-use tests::{cases, seed};
+use tests::cases;
+use tests::lakes::{LAKES, folder, mission, scenario, task};
 
-const LAKES: [&str; 10] = [
-    "atlin",
-    "bieler",
-    "catemaco",
-    "harrison",
-    "kyyvesi",
-    "lac-la-croix",
-    "loups-marins",
-    "manych-gudilo",
-    "ootsa",
-    "stony",
-];
-
-const VEHICLES: [&str; 3] = [
-    r#"{ kind = "unicycle", reach = 10.0, step = 0.5 }"#,
-    r#"{ kind = "boat", reach = 10.0, step = 0.5, sharpest = 0.5 }"#,
-    r#"{ kind = "car", reach = 10.0, step = 0.5, radius = 4.0 }"#,
-];
-
-/// Who plans, and what there is to find.
-const TASKS: [(&str, &str); 4] =
-    [("lookahead", "line"), ("lookahead", "noise"), ("track", "circle"), ("track", "noise")];
-
-/// A scenario in a lake: a line or a spill somewhere in it, and a start on the water.
-fn scenario(number: u64) -> String {
-    let lake = LAKES[(number % 10) as usize];
-    let vehicle = VEHICLES[((number / 10 + number) % 3) as usize];
-    let (algorithm, what) = TASKS[(number / 10 % 4) as usize];
-    let mut rng = ChaCha8Rng::seed_from_u64(seed(52) + number);
-    let mut text = format!(
-        "algorithm = \"{algorithm}\"\nsteps = 200\nseed = {number}\narea = {{ geojson = \"{lake}.geojson\" }}\n\
-         vehicle = {vehicle}\noracle = []\n"
-    );
-    if what == "noise" {
-        text += "noise = { p = 0.9, trusted_radius = 0.0 }\n";
-        text = text.replace("steps = 200", "steps = 60");
-    }
-    // Every second robot does not know quite where it is.
-    if number % 2 == 1 {
-        text += "errors = { position = 0.3 }\n";
-    }
-    let (sin, cos) = rng.random_range(0.0..std::f64::consts::TAU).sin_cos();
-    let [x, z] = [0, 1].map(|_| rng.random_range(-150.0..150.0));
-    let _ = match algorithm {
-        "track" => writeln!(text, "truth = {{ circle = [{x}, {z}, 80.0] }}"),
-        _ => writeln!(text, "truth = {{ line = [{sin}, {cos}, {}] }}", -sin * x - cos * z),
-    };
-    text
-}
-
-/// The mission of a scenario, from a start on the water that is drawn.
-fn mission(number: u64) -> Mission {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios/lakes");
-    let text = scenario(number);
-    // The start is put in place of one that is anywhere on the water.
-    let parse = |start: &str| {
-        scenario::parse_in("lake", &format!("{text}{start}"), &folder, Overrides::default())
-    };
-    let mut rng = ChaCha8Rng::seed_from_u64(seed(53) + number);
-    for _ in 0..1_000 {
-        let [lat, lon] =
-            [60.2 + rng.random_range(-0.0045..0.0045), 24.9 + rng.random_range(-0.009..0.009)];
-        if let Ok(mission) = parse(&format!("start = {{ lat = {lat}, lon = {lon} }}\n")) {
-            return mission;
-        }
-    }
-    panic!(
-        "no start on the water: {:?}",
-        parse("start = { lat = 60.2, lon = 24.9 }\n").map(|_| ())
-    );
-}
+/// Cells along the longer side of a lake.
+const CELLS: u16 = 256;
 
 #[test]
 fn no_motion_leaves_the_water() {
     let mut ends = BTreeMap::new();
     for number in 0..cases(40, 4_000) {
-        let mission = mission(number);
+        let mission = mission(number, CELLS);
         let flight = fly(&mission, mission.vehicle, u64::MAX);
         let told = format!("{:?}", flight.ending);
-        *ends.entry((TASKS[(number / 10 % 4) as usize], told)).or_insert(0) += 1;
+        *ends.entry((task(number), told)).or_insert(0) += 1;
         let broken = flight.findings.iter().filter(|it| it.0 != Finding::TooLong);
-        assert_eq!(broken.count(), 0, "{number}: {flight:?}\n{}", scenario(number));
+        assert_eq!(broken.count(), 0, "{number}: {flight:?}\n{}", scenario(number, CELLS));
     }
     println!("{ends:#?}");
 }
@@ -105,7 +34,7 @@ fn no_motion_leaves_the_water() {
 #[test]
 fn little_of_the_water_is_lost() {
     for (number, name) in (0..).zip(LAKES) {
-        let mission = mission(number);
+        let mission = mission(number, CELLS);
         let lake = mission.lake.expect("a lake");
         assert!(lake.lost[0] < 0.25 && lake.lost[1] < 0.05, "{}", lake.words());
         let side = f64::from(lake.chart.side()) / f64::from(UNITS_PER_METRE);
@@ -123,8 +52,7 @@ fn little_of_the_water_is_lost() {
 /// Positions come back from the lattice to within a centimetre, across the date line too.
 #[test]
 fn a_map_is_brought_there_and_back() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios/lakes");
-    let text = std::fs::read_to_string(folder.join("stony.geojson")).expect("a lake");
+    let text = std::fs::read_to_string(folder().join("stony.geojson")).expect("a lake");
     let scratch = tempfile::tempdir().expect("a folder");
     for (lat, lon) in [(60.2, 24.9), (-45.0, 180.0), (0.0, -180.0), (78.0, 179.999)] {
         // The lake is moved in degrees.

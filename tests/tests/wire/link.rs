@@ -36,7 +36,7 @@ use tests::wire::{self, WAIT, Way};
 
 /// What became of some missions.
 #[derive(Clone, Copy, Default)]
-struct Tally {
+pub(crate) struct Tally {
     /// Frames beyond those of a good link.
     again: u64,
     /// Labels that were read on the way.
@@ -48,7 +48,7 @@ struct Tally {
 }
 
 /// Flies a mission over a link with faults. Its trace is that of the same mission here: no label counts twice.
-fn flies_as_here(mission: &Mission, faults: Faults) -> Tally {
+pub(crate) fn flies_as_here(mission: &Mission, faults: Faults) -> Tally {
     let network = Network::new(mission, LabelSource::Vehicle, faults);
     let flown = offered(&network, fly);
     let Ok(Flown::Ended(end)) = flown else { panic!("{flown:?}: {mission:?}") };
@@ -233,8 +233,9 @@ fn a_setup_has_the_terms_that_were_told_or_none() {
     assert!(mission.config.area.hulls().count() > 0);
     let network = Network::new(&mission, LabelSource::Vehicle, Faults::default());
     offered(&network, |chip, setup| {
-        let mut area =
-            |setup: &Setup| chip.terms::<AnyVehicle, MissionArea>(setup).map(|terms| terms.area);
+        let mut area = |setup: &Setup| {
+            chip.terms::<AnyVehicle, MissionArea>(setup, &mut ()).map(|terms| terms.area)
+        };
         assert_eq!(area(setup), Ok(mission.config.area));
         let fewer = Setup { keep_outs: setup.keep_outs.map(|count| count - 1), ..setup.clone() };
         assert!(area(&fewer).is_ok_and(|it| it != mission.config.area));

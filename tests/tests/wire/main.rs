@@ -1,5 +1,6 @@
 //! What goes over the link to a chip: messages, frames, delivery, restarts.
 
+mod charts;
 mod link;
 mod player;
 mod port;

@@ -17,9 +17,9 @@ use planner_core::error::{GivenError, GridError, ObservationError, RoomError, Sh
 use planner_core::link::delivery::Link;
 use planner_core::link::frame::{Decoder, Envelope, FRAME, Frame, Message};
 use planner_core::link::message::{
-    Accepted, Algorithm, Capacity, ClockRate, DeclinedError, EndReason, LabelSource, MOST_GIVEN,
-    MOST_KEEP_OUTS, MissionArea, MissionEnd, Move, Outline, PROTOCOL, Reply, Request, Settings,
-    Setup, Took,
+    Accepted, Algorithm, Capacity, ChartFault, ChartPiece, ChartShape, ClockRate, DeclinedError,
+    EndReason, LabelSource, MOST_GIVEN, MOST_KEEP_OUTS, MissionArea, MissionEnd, Move, Outline,
+    PROTOCOL, Reply, Request, Settings, Setup, Took,
 };
 use planner_core::{
     Angle, Area, Car, CarShape, Crossing, EffortWeight, Estimates, Far, Following, Front,
@@ -32,6 +32,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tests::build;
 use tests::chip::Socket;
+use tests::lakes;
 
 use crate::traced::{self, Schema};
 
@@ -216,6 +217,16 @@ fn missions(vectors: &mut Vectors) {
     vectors.add("outline-the-border", 11, 2, outline());
     vectors.add("outline-a-disc", 11, 3, outline());
 
+    let in_lake = lakes::mission(18, 24);
+    let by_map = setup(&in_lake, LabelSource::Vehicle);
+    vectors.add("setup-in-a-lake", 17, 1, Reply::Setup(by_map));
+    let chart = in_lake.lake.expect("a lake").chart;
+    vectors.add("chart-asked", 17, 3, Request::Chart);
+    vectors.add("chart", 17, 3, Reply::Chart(ChartShape::of(&chart)));
+    vectors.add("cells-asked", 17, 4, Request::Cells(0));
+    let piece = ChartPiece::of(&chart, 0).expect("cells");
+    vectors.add("cells", 17, 4, Reply::Cells(piece));
+
     let along_front = read(ALONG_FRONT, plain);
     let by_tracker = setup(&along_front, LabelSource::Vehicle);
     vectors.add("setup-of-a-follower-of-fronts", 13, 1, Reply::Setup(by_tracker.clone()));
@@ -312,7 +323,16 @@ fn requests(vectors: &mut Vectors, motion: Motion) {
         DeclinedError::Goal,
         DeclinedError::Price,
     ];
+    let charts = [
+        ChartFault::Room(512),
+        ChartFault::Shape,
+        ChartFault::Missing(7),
+        ChartFault::Repeated(6),
+        ChartFault::Wrong(7),
+        ChartFault::Sum,
+    ];
     let declined = declined.into_iter().chain(given.map(DeclinedError::Given));
+    let declined = declined.chain(charts.map(DeclinedError::Chart));
     for why in declined {
         named("declined", format!("{why:?}"), Request::Declined(why));
     }
@@ -431,7 +451,7 @@ fn refused(vectors: &mut Vectors) {
         ("way", &[0x22, 12, 4, 6, 0][..], "a way that there is not"),
         ("too-short", &[0x3f, 12, 4, 6], "content ends too early"),
         ("too-long", &[0x3f, 12, 4, 6, 0, 0], "content goes on"),
-        ("variant", &[0x3f, 12, 4, 8], "a variant that there is not"),
+        ("variant", &[0x3f, 12, 4, 10], "a variant that there is not"),
         ("bool", &[0x3f, 13, 4, 7, 0, 2], "a bool of 2"),
         ("optional", &[0x3f, 12, 4, 6, 2, 1], "an optional that begins with 2"),
         ("u16", &[0x3f, 0, 1, 0, 0x80, 0x80, 4], "65536 is no u16"),

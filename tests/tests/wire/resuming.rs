@@ -16,12 +16,13 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::trace;
 use host_sim::world::errors::Errors;
 use planner_core::link::frame::Decoder;
-use planner_core::link::message::{LabelSource, Request};
+use planner_core::link::message::{CHARTED, LabelSource, Request};
 use planner_core::{Reading, Reliability};
 use rayon::prelude::*;
 use tests::cases;
 use tests::chip::{FarEnd, Off, Reads, power_up};
 use tests::fronts::following;
+use tests::lakes;
 use tests::missions::{mission, of_any_vehicle, reading};
 use tests::wire::{self, Wire};
 
@@ -178,7 +179,8 @@ fn missions() -> Vec<(Mission, LabelSource)> {
     let of_readings = (0..few(12)).map(|number| reading(of_any_vehicle(number, 4)));
     let of_fronts = (0..4).map(|number| following(6, number, 12));
     let of_fronts = of_fronts.chain((0..few(4)).map(|number| reading(following(7, number, 6))));
-    let all = by_turns.chain(of_vehicles).chain(of_readings).chain(of_fronts);
+    let of_lakes = (0..few(4)).map(|number| lakes::for_a_chip(9 * number, 64, 6));
+    let all = by_turns.chain(of_vehicles).chain(of_readings).chain(of_fronts).chain(of_lakes);
     let by_source = |mission: Mission| {
         // A chip's sensor has no robot that errs to ask where it truly is.
         let by_chip =
@@ -188,7 +190,7 @@ fn missions() -> Vec<(Mission, LabelSource)> {
     all.flat_map(by_source).collect()
 }
 
-/// The trace without a restart, and the frames that the chip sent: a hello, for outlines, that it accepts, two a motion
+/// The trace without a restart, and the frames that the chip sent: a hello, for outlines and a chart, that it accepts, two a motion
 /// with a label on the way or along a front, one for any other, and the end.
 fn undisturbed(mission: &Mission, labels: LabelSource) -> (String, u64) {
     let (trace, frames, _) = flown(Yard::new(mission, labels, None));
@@ -206,8 +208,10 @@ fn undisturbed(mission: &Mission, labels: LabelSource) -> (String, u64) {
 /// Frames that a chip sends before the first motion, on a link that loses none.
 fn before(mission: &Mission) -> u64 {
     let setup = setup::setup(mission, LabelSource::Vehicle).expect("a mission");
-    let outlines = setup.keep_outs.map_or(0, |count| u64::from(count) + 1);
-    1 + outlines + 1
+    let outlines = setup.keep_outs.map_or(0, |count| u64::from(count % CHARTED) + 1);
+    let pieces =
+        mission.lake.as_ref().map_or(0, |it| it.chart.cells().len().div_ceil(64) as u64 + 1);
+    1 + outlines + pieces + 1
 }
 
 /// Chip, host or both restart before each frame of a mission. On a good link it flies again after a hello and its

@@ -22,7 +22,7 @@ use tests::missions::{mission, of_any_vehicle, reading};
 const MISSING: usize = 3;
 
 /// A vehicle that answers as a function says, and is busy where that has no answer yet.
-struct Vehicle<F> {
+pub(crate) struct Vehicle<F> {
     responder: Responder,
     setup: Setup,
     act: F,
@@ -31,7 +31,7 @@ struct Vehicle<F> {
 }
 
 impl<F: FnMut(&Request) -> Option<Reply>> Vehicle<F> {
-    fn new(mission: &Mission, act: F) -> RefCell<Self> {
+    pub(crate) fn new(mission: &Mission, act: F) -> RefCell<Self> {
         let setup = setup::setup(mission, LabelSource::Vehicle).expect("a mission for a chip");
         let (responder, arrived) = (Responder::new(1), VecDeque::new());
         RefCell::new(Self { responder, setup, act, under_way: None, arrived })
@@ -147,7 +147,7 @@ fn a_border_with_a_radius_is_no_area() {
             Some(Reply::Outline(outline))
         });
         let found = offered(&vehicle, |chip, setup| {
-            chip.terms::<AnyVehicle, MissionArea>(setup).map(|terms| terms.area)
+            chip.terms::<AnyVehicle, MissionArea>(setup, &mut ()).map(|terms| terms.area)
         });
         assert_eq!(found, area, "{radius}");
     }

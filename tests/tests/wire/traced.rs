@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::{self, Write as _};
 
-use planner_core::link::message::{MOST_CORNERS, MOST_GIVEN};
+use planner_core::link::message::{CELL_BYTES, MOST_CORNERS, MOST_GIVEN};
 use serde::de::{DeserializeSeed, EnumAccess, SeqAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -18,7 +18,8 @@ const TUPLES: [(&str, &[&str]); 5] = [
 ];
 
 /// Entries that a list may have.
-const LISTS: [(&str, usize); 2] = [("given", MOST_GIVEN), ("corners", MOST_CORNERS)];
+const LISTS: [(&str, usize); 3] =
+    [("given", MOST_GIVEN), ("corners", MOST_CORNERS), ("bytes", CELL_BYTES)];
 
 /// A type of which no value has been read.
 const UNKNOWN: &str = "?";

@@ -77,16 +77,17 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
 
     /// What to plan with and where, of what the chip has: [`AnyVehicle`](crate::motion::any_vehicle::AnyVehicle) or the
     /// [`Unicycle`](crate::motion::unicycle::Unicycle) alone, in a [`MissionArea`](crate::link::message::MissionArea) or in
-    /// an [`Area`](crate::geometry::area::Area) alone. If this
-    /// refuses a setup, no planner exists for it, so pass the refusal to [`give_up`](Self::give_up).
+    /// an [`Area`](crate::geometry::area::Area) alone, or in `Charts`, whose cells come
+    /// into the room. If this refuses a setup, no planner exists for it, so pass the refusal to [`give_up`](Self::give_up).
     ///
     /// # Errors
     /// [`NoTerms`].
-    pub fn terms<D: KnownDynamics, G: FromOutlines>(
+    pub fn terms<'a, D: KnownDynamics, G: FromOutlines>(
         &mut self,
         setup: &Setup,
-    ) -> Result<PlannerSetup<D, G>, NoTerms> {
-        let area = G::of(setup, &mut self.link)?;
+        room: &'a mut G::Room,
+    ) -> Result<PlannerSetup<D, G::Ground<'a>>, NoTerms> {
+        let area = G::of(setup, &mut self.link, room)?;
         Ok(setup.terms(area)?)
     }
 

@@ -94,8 +94,9 @@ impl<P: Port, S: LabelSensor> Station<P, S> {
         setup: &Setup,
         watch: &mut impl Watch,
     ) -> Result<Flown, LinkError> {
+        let mut room = G::EMPTY;
         watch.set_up(setup);
-        let flown = match self.terms::<D, G>(setup) {
+        let flown = match self.terms::<D, G>(setup, &mut room) {
             Ok(terms) => A::fly(Mission { station: self, setup, watch }, terms),
             Err(none) => self.give_up(none),
         };
