@@ -26,7 +26,14 @@
 /* Define this for a library that is built without the feature `polygons`: its planners are smaller. */
 #ifndef PLANNER_WITHOUT_POLYGONS
 #define PLANNER_WITH_POLYGONS
+/* The same without the feature `charts`. */
+#ifndef PLANNER_WITHOUT_CHARTS
+#define PLANNER_WITH_CHARTS
 #endif
+#endif
+
+/* Words of a chart's cells. */
+#define PLANNER_CHART_WORDS(columns, rows) (((columns) + 31) / 32 * (rows))
 
 /*
  Corners that an area can have, and each keep-out in it.
@@ -39,11 +46,23 @@
 #define PLANNER_KEEP_OUTS 8
 
 /*
+ Rows and columns that a chart can have.
+ */
+#define PLANNER_CHART_CELLS 256
+
+/*
  Memory of a planner is aligned to so many bytes.
  */
 #define PLANNER_ALIGNMENT 8
 
-#if defined(PLANNER_WITH_POLYGONS)
+#if defined(PLANNER_WITH_CHARTS)
+/*
+ Bytes of a planner whose labels are always right.
+ */
+#define PLANNER_BYTES 2320
+#endif
+
+#if (defined(PLANNER_WITH_POLYGONS) && !defined(PLANNER_WITH_CHARTS))
 /*
  Bytes of a planner whose labels are always right.
  */
@@ -57,7 +76,14 @@
 #define PLANNER_BYTES 1184
 #endif
 
-#if defined(PLANNER_WITH_POLYGONS)
+#if defined(PLANNER_WITH_CHARTS)
+/*
+ Bytes of a planner whose labels may be wrong.
+ */
+#define PLANNER_DOUBTFUL_BYTES 17224
+#endif
+
+#if (defined(PLANNER_WITH_POLYGONS) && !defined(PLANNER_WITH_CHARTS))
 /*
  Bytes of a planner whose labels may be wrong.
  */
@@ -71,7 +97,14 @@
 #define PLANNER_DOUBTFUL_BYTES 16096
 #endif
 
-#if defined(PLANNER_WITH_POLYGONS)
+#if defined(PLANNER_WITH_CHARTS)
+/*
+ Bytes of a planner of fronts.
+ */
+#define PLANNER_FOLLOWER_BYTES 9768
+#endif
+
+#if (defined(PLANNER_WITH_POLYGONS) && !defined(PLANNER_WITH_CHARTS))
 /*
  Bytes of a planner of fronts.
  */
@@ -204,6 +237,11 @@ typedef enum {
    too close together for single precision.
    */
   PLANNER_STATUS_UNKNOWN = 78,
+  /*
+   Refused: a chart has no possible side or size, leaves the ground within 8,192 m of the origin, or comes beside a
+   rectangle. Or the library is built without charts.
+   */
+  PLANNER_STATUS_CHART = 79,
 } planner_status;
 
 /*
@@ -305,6 +343,36 @@ typedef struct {
 } planner_area;
 
 /*
+ Square cells, of which each is open or closed. Motions stay on open cells, and all ground outside of them is closed.
+
+ The words are not copied. A planner reads them with each call, so they stay where they are, and as they are, for as long
+ as it is used. They may be in flash.
+ */
+typedef struct {
+  /*
+   `PLANNER_CHART_WORDS(columns, rows)` words: row by row, that of the least z first. A row begins with a word of its
+   own. Bit `k` of its word `w` is column `32 w + k`, counted from the least x. 1 is open.
+   */
+  const uint32_t *cells;
+  /*
+   The corner with the least x and z, metres.
+   */
+  planner_point corner;
+  /*
+   The side of a cell, metres; it is rounded to a multiple of 2^-16 m.
+   */
+  double side;
+  /*
+   Columns, from 1 to `PLANNER_CHART_CELLS`.
+   */
+  uint16_t columns;
+  /*
+   Rows, from 1 to `PLANNER_CHART_CELLS`.
+   */
+  uint16_t rows;
+} planner_chart;
+
+/*
  What is fixed beforehand.
  */
 typedef struct {
@@ -364,6 +432,11 @@ typedef struct {
    A library that is built without polygons takes null alone.
    */
   const planner_area *area;
+  /*
+   A lake of any shape; null for all of the area. Then the mission's rectangle is all zeros: it is the one around all
+   cells. `area` may have keep-outs. A library that is built without charts takes null alone.
+   */
+  const planner_chart *chart;
 } planner_mission;
 
 /*
@@ -566,7 +639,8 @@ planner_verdict planner_check(const planner_mission *mission,
 
  # Safety
  `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
- must be null or readable. None of them may lie in that memory.
+ must be null or readable, and so must its chart. The cells of the chart must be readable as long as the planner is used. None of
+ them may lie in that memory.
  */
 planner_status planner_begin(planner_t **made,
                              void *memory,

@@ -94,10 +94,11 @@ pub extern "C" fn bytes(mission: Option<&Mission<'_>>) -> usize {
 }
 
 /// The parts of a planner, and its goal.
-fn possible(
+unsafe fn possible(
     (mission, given): (&Mission<'_>, &[Sample]),
 ) -> Result<(Parts, Option<Goal<SlopeWithin>>), Refusal> {
-    let parts = Parts::new(mission, given)?;
+    // SAFETY: the caller promises it.
+    let parts = unsafe { Parts::new(mission, given) }?;
     let goal = mission.goal()?;
     // With room for these samples alone.
     let found = if mission.is_true() {
@@ -130,7 +131,8 @@ pub unsafe extern "C" fn check(
 ) -> Verdict {
     // SAFETY: the caller promises it.
     let inputs = unsafe { inputs(mission, (given, count)) };
-    inputs.and_then(possible).map(drop).into()
+    // SAFETY: the caller promises it.
+    inputs.and_then(|inputs| unsafe { possible(inputs) }).map(drop).into()
 }
 
 /// Makes a planner in so many bytes of memory that is aligned to 8, from 3 to 16 given samples of both labels, and
@@ -139,7 +141,8 @@ pub unsafe extern "C" fn check(
 ///
 /// # Safety
 /// `memory` must be null or writable for so many bytes, and `given` null or readable for so many samples. The mission's area
-/// must be null or readable. None of them may lie in that memory.
+/// must be null or readable, and so must its chart. The cells of the chart must be readable as long as the planner is used. None of
+/// them may lie in that memory.
 #[unsafe(export_name = "planner_begin")]
 pub unsafe extern "C" fn begin(
     made: Option<&mut MaybeUninit<*mut Finder>>,
@@ -162,7 +165,8 @@ unsafe fn begin_in(
 ) -> Result<*mut Finder, Status> {
     // SAFETY: the caller promises it.
     let (mission, given) = unsafe { inputs(mission, given) }?;
-    let (parts, goal) = possible((mission, given))?;
+    // SAFETY: the caller promises it.
+    let (parts, goal) = unsafe { possible((mission, given)) }?;
     // SAFETY (of both): the caller promises it.
     let begun = if mission.is_true() {
         unsafe { begin_true(memory, &parts, goal) }

@@ -89,12 +89,13 @@ pub extern "C" fn follower_bytes() -> usize {
 }
 
 /// The parts of a planner of fronts, the front, and the stretch to watch if there is one.
-fn possible(
+unsafe fn possible(
     (mission, given): (&Mission<'_>, &[Sample]),
     settings: FrontSettings,
 ) -> Result<(Parts, Front, Option<FrontStretch>), Refusal> {
     let refused = |what| Refusal::of(Status::Mission, what);
-    let parts = Parts::new(mission, given)?;
+    // SAFETY: the caller promises it.
+    let parts = unsafe { Parts::new(mission, given) }?;
     if mission.slopes != 0.0 {
         return Err(refused(c"slopes"));
     }
@@ -127,7 +128,8 @@ pub unsafe extern "C" fn follower_check(
 ) -> Verdict {
     // SAFETY: the caller promises it.
     let inputs = unsafe { inputs(mission, (given, count)) };
-    inputs.and_then(|inputs| possible(inputs, front)).map(drop).into()
+    // SAFETY: the caller promises it.
+    inputs.and_then(|inputs| unsafe { possible(inputs, front) }).map(drop).into()
 }
 
 /// Makes a planner of fronts in so many bytes of memory that is aligned to 8, from 0 to 16 given samples, and writes where
@@ -161,7 +163,8 @@ unsafe fn begin_in(
 ) -> Result<*mut Follower, Status> {
     // SAFETY: the caller promises it.
     let inputs = unsafe { inputs(mission, given) }?;
-    let (parts, front, stretch) = possible(inputs, settings)?;
+    // SAFETY: the caller promises it.
+    let (parts, front, stretch) = unsafe { possible(inputs, settings) }?;
     // SAFETY (of both): the caller promises it.
     let begun = match stretch {
         None => unsafe { begin_track(memory, &parts, (front, settings.until_closed == 1)) },

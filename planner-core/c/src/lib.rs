@@ -28,7 +28,7 @@ mod status;
 mod types;
 mod verdict;
 
-pub use area::{Area, CORNERS, KEEP_OUTS, KeepOut};
+pub use area::{Area, CHART_CELLS, CORNERS, Chart, KEEP_OUTS, KeepOut};
 pub use finder::{
     Finder, begin, bits, bytes, chance, check, estimate, observe, observe_believed,
     observe_on_the_way, observe_within, plan, restore, save,

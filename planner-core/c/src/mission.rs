@@ -5,7 +5,7 @@ use core::ffi::CStr;
 use planner_core::error::GridError;
 use planner_core::{Angle, Goal, Noise, SlopeWithin, Tolerance, Unicycle};
 
-use crate::area::{Area, Ground};
+use crate::area::{Area, Chart, Ground, Outlines};
 use crate::status::Status;
 use crate::types::Point;
 use crate::verdict::Refusal;
@@ -44,6 +44,9 @@ pub struct Mission<'a> {
     /// A polygon and keep-outs; null for the rectangle with nothing in it. It is read while a call runs, and not after.
     /// A library that is built without polygons takes null alone.
     pub area: Option<&'a Area>,
+    /// A lake of any shape; null for all of the area. Then the mission's rectangle is all zeros: it is the one around all
+    /// cells. `area` may have keep-outs. A library that is built without charts takes null alone.
+    pub chart: Option<&'a Chart>,
 }
 
 /// The level of a promise, unless the mission says another, and the highest; millionths.
@@ -51,12 +54,40 @@ const USUAL_LEVEL: u32 = 900_000;
 const HIGHEST_LEVEL: f64 = 0.9999;
 
 impl Mission<'_> {
-    pub(crate) fn ground(&self) -> Result<Ground, Refusal> {
+    /// # Safety
+    /// As for [`Chart::read`](crate::area::Chart).
+    pub(crate) unsafe fn ground(&self) -> Result<Ground, Refusal> {
+        #[cfg(not(feature = "charts"))]
+        if self.chart.is_some() {
+            return Err(Refusal::of(Status::Chart, c"chart"));
+        }
+        #[cfg(feature = "charts")]
+        if let Some(chart) = self.chart {
+            // A rectangle besides would be another area.
+            if self.sides().into_iter().any(|side| side != 0.0) {
+                return Err(Refusal::of(Status::Chart, c"chart"));
+            }
+            // SAFETY: the caller promises it.
+            let chart = unsafe { chart.read() }?;
+            return Ok(Ground::new(self.outlines(Ok(chart.bounds()))?, Some(chart)));
+        }
+        let outlines = self.outlines(self.rectangle())?;
+        #[cfg(feature = "charts")]
+        return Ok(Ground::new(outlines, None));
+        #[cfg(not(feature = "charts"))]
+        Ok(outlines)
+    }
+
+    /// The area by its corners, with a rectangle for one that has none.
+    fn outlines(
+        &self,
+        rectangle: Result<planner_core::Area, Refusal>,
+    ) -> Result<Outlines, Refusal> {
         match self.area {
-            None => Ok(Ground::from(self.rectangle()?)),
+            None => Ok(Outlines::from(rectangle?)),
             #[cfg(feature = "polygons")]
             Some(area) if area.corner_count == 0 => {
-                area.with_keep_outs(planner_core::Hull::of(self.rectangle()?))
+                area.with_keep_outs(planner_core::Hull::of(rectangle?))
             }
             #[cfg(feature = "polygons")]
             Some(area) if self.sides().into_iter().all(|side| side == 0.0) => {

@@ -27,7 +27,10 @@ impl Parts {
     ///
     /// # Errors
     /// What of them is refused, and why.
-    pub(crate) fn new(mission: &Mission<'_>, given: &[Sample]) -> Result<Self, Refusal> {
+    ///
+    /// # Safety
+    /// As for [`Mission::ground`].
+    pub(crate) unsafe fn new(mission: &Mission<'_>, given: &[Sample]) -> Result<Self, Refusal> {
         let refusal = |status| Refusal::of(status, c"given");
         let mut samples =
             [planner_core::Sample { site: Site::ORIGIN, label: Label::Negative }; MOST_GIVEN];
@@ -35,7 +38,9 @@ impl Parts {
         for (number, (place, sample)) in places.iter_mut().zip(given).enumerate() {
             *place = sample.read().map_err(|status| refusal(status).about(number))?;
         }
-        let (ground, noise, unicycle) = (mission.ground()?, mission.noise()?, mission.unicycle()?);
+        // SAFETY: the caller promises it.
+        let ground = unsafe { mission.ground() }?;
+        let (noise, unicycle) = (mission.noise()?, mission.unicycle()?);
         let too_large = Refusal::of(Status::ToleranceTooLarge, c"tolerance");
         let ground = aimed_for(ground, &unicycle, noise.tolerance).map_err(|_| too_large)?;
         Ok(Self { ground, unicycle, noise, samples, count: given.len() })

@@ -14,21 +14,30 @@ use crate::snapshot::FOLLOWER_SNAPSHOT_BYTES;
 pub const ALIGNMENT: usize = 8;
 
 /// Bytes of a planner whose labels are always right.
-#[cfg(feature = "polygons")]
+#[cfg(feature = "charts")]
+pub const BYTES: usize = 2320;
+/// Bytes of a planner whose labels are always right.
+#[cfg(all(feature = "polygons", not(feature = "charts")))]
 pub const BYTES: usize = 2272;
 /// Bytes of a planner whose labels are always right.
 #[cfg(not(feature = "polygons"))]
 pub const BYTES: usize = 1184;
 
 /// Bytes of a planner whose labels may be wrong.
-#[cfg(feature = "polygons")]
+#[cfg(feature = "charts")]
+pub const DOUBTFUL_BYTES: usize = 17224;
+/// Bytes of a planner whose labels may be wrong.
+#[cfg(all(feature = "polygons", not(feature = "charts")))]
 pub const DOUBTFUL_BYTES: usize = 17176;
 /// Bytes of a planner whose labels may be wrong.
 #[cfg(not(feature = "polygons"))]
 pub const DOUBTFUL_BYTES: usize = 16096;
 
 /// Bytes of a planner of fronts.
-#[cfg(feature = "polygons")]
+#[cfg(feature = "charts")]
+pub const FOLLOWER_BYTES: usize = 9768;
+/// Bytes of a planner of fronts.
+#[cfg(all(feature = "polygons", not(feature = "charts")))]
 pub const FOLLOWER_BYTES: usize = 9720;
 /// Bytes of a planner of fronts.
 #[cfg(not(feature = "polygons"))]

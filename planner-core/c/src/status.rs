@@ -62,6 +62,9 @@ pub enum Status {
     /// Refused: what is asked for is not known. The front is not found, or it is lost. Or the lines that are left lie
     /// too close together for single precision.
     Unknown = 78,
+    /// Refused: a chart has no possible side or size, leaves the ground within 8,192 m of the origin, or comes beside a
+    /// rectangle. Or the library is built without charts.
+    Chart = 79,
 }
 
 /// Whether a status says that the mission has ended. It is a number, as an enumeration of C may hold any.

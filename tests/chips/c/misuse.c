@@ -28,6 +28,50 @@ static uint64_t memory[PLANNER_DOUBTFUL_BYTES / sizeof(uint64_t)];
         IS(planner_begin(&none, memory, sizeof memory, mission, given, count), said); \
     } while (0)
 
+/* Charts: in the place of the rectangle, with keep-outs and without. */
+static int charts(const planner_mission *good, const planner_sample *given) {
+    int failed = 0;
+    static uint32_t cells[PLANNER_CHART_WORDS(PLANNER_CHART_CELLS, PLANNER_CHART_CELLS) + 1];
+    const planner_chart all = {.cells = cells, .side = 0.5, .columns = 40, .rows = 40};
+    planner_chart chart = all;
+    planner_mission lake = *good;
+    lake.chart = &chart;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_CHART, "chart", -1);
+    lake.max_x = lake.max_z = 0.0;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_OK, "", -1);
+    chart.cells = NULL;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_MEMORY, "chart", -1);
+    chart.cells = (const uint32_t *)((uintptr_t)cells + 2);
+    BLAMES(&lake, given, 4, PLANNER_STATUS_MEMORY, "chart", -1);
+    const uint16_t counts[] = {0, 1, 40, 256, 257, 65535};
+    for (int i = 0; i < 36; i++) {
+        chart = all, chart.columns = counts[i % 6], chart.rows = counts[i / 6];
+        bool is_possible = i % 6 > 0 && i % 6 < 4 && i / 6 > 0 && i / 6 < 4;
+        if (is_possible) BLAMES(&lake, given, 4, PLANNER_STATUS_OK, "", -1);
+        if (!is_possible) BLAMES(&lake, given, 4, PLANNER_STATUS_CHART, "chart", -1);
+    }
+    const double no_sides[] = {0.0, -1.0, 5e-6, 410.0, 1e300, 0.0 / 0.0, 1.0 / 0.0};
+    for (size_t i = 0; i < sizeof no_sides / sizeof *no_sides; i++) {
+        chart = all, chart.side = no_sides[i];
+        BLAMES(&lake, given, 4, PLANNER_STATUS_CHART, "chart", -1);
+    }
+    chart = all, chart.corner.x = 8180.0; /* its other corner is too far */
+    BLAMES(&lake, given, 4, PLANNER_STATUS_CHART, "chart", -1);
+    chart.corner.x = 9000.0;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_POSITION, "chart", -1);
+    chart.corner.x = 0.0 / 0.0;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_POSITION, "chart", -1);
+    chart = all, lake.tolerance = 11.0;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_TOLERANCE_TOO_LARGE, "tolerance", -1);
+    lake.tolerance = 0.0;
+    planner_area area = {.keep_out_count = 1, .keep_outs = {{.corner_count = 1, .corners = {{5.0, 6.0}}, .radius = 1.0}}};
+    lake.area = &area;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_OK, "", -1);
+    area.keep_outs[0].radius = -1.0;
+    BLAMES(&lake, given, 4, PLANNER_STATUS_KEEP_OUT, "keep_outs", 0);
+    return failed;
+}
+
 /* Areas and keep-outs, and what a check says of each part of a mission. */
 static int areas(const planner_mission *good, const planner_sample *given) {
     int failed = 0;
@@ -125,6 +169,8 @@ static int areas(const planner_mission *good, const planner_sample *given) {
     memcpy(area.corners, border, sizeof border);
     lawn.tolerance = 11.0;
     BLAMES(&lawn, given, 4, PLANNER_STATUS_TOLERANCE_TOO_LARGE, "tolerance", -1);
+
+    failed |= charts(good, given);
 
     BLAMES(NULL, given, 4, PLANNER_STATUS_MEMORY, "", -1);
     BLAMES(good, NULL, 4, PLANNER_STATUS_MEMORY, "", -1);

@@ -81,6 +81,9 @@ static void finds(double p, double tolerance) {
     const planner_sample apart[] = {{0.0, 0.0, 1}, {1.0, 0.0, 0}, {2.0, 0.0, 1}, {1.0, 1.0, 1}};
     size_t bytes = planner_bytes(&good);
     void *memory = all.planner;
+    const planner_chart chart = {.columns = 40, .rows = 40, .side = 0.5}; /* without cells */
+    planner_mission lake = good;
+    lake.max_x = lake.max_z = 0.0, lake.chart = &chart;
     memset(&all, 0xa5, sizeof all);
     all.made = NULL;
     if (planner_bytes(&good) > (p < 1.0 ? PLANNER_DOUBTFUL_BYTES : PLANNER_BYTES)) failed = 1;
@@ -97,6 +100,10 @@ static void finds(double p, double tolerance) {
         REFUSED(planner_begin(&all.made, memory, bytes, &good, apart, 4), GIVEN);
         REFUSED(planner_begin(&all.made, memory, bytes, &bad, given, 4), MISSION);
         REFUSED(planner_begin(&all.made, memory, bytes, &vague, given, 4), TOLERANCE_TOO_LARGE);
+        REFUSED(planner_begin(&all.made, memory, bytes, &lake, given, 4), MEMORY);
+        lake.max_x = 20.0;
+        REFUSED(planner_begin(&all.made, memory, bytes, &lake, given, 4), CHART);
+        lake.max_x = 0.0;
         if (round > 0) break;
         DONE(planner_begin(&all.made, memory, bytes, &good, given, 4));
         DONE(planner_plan(all.made, here, &all.motion));

@@ -22,6 +22,9 @@ pub const CHIP: &str = "thumbv7em-none-eabihf";
 /// A package that is a workspace of its own, and its folder. Its release profile is for chips.
 const ALONE: (&str, &str) = ("microbit", "firmware/microbit");
 
+/// The program of `tests/bare-core` that takes charts. It is built by itself, with a feature that the others do not have.
+const WITH_CHARTS: &str = "lakes";
+
 /// A program of `tests/bare-core` for a target; `None`, and a visible line, where it cannot be built.
 ///
 /// # Panics
@@ -31,13 +34,14 @@ pub fn bare(target: &str, program: &str) -> Option<Vec<u8>> {
 }
 
 /// The folder with the programs of a package for a target; `None`, and a visible line, where they cannot be built. All
-/// are built at once, or with one core in view the program alone that is asked for.
+/// are built at once but for the one with charts, or with one core in view the program alone that is asked for.
 ///
 /// # Panics
 /// When they fail to build, or with `CI` set where they cannot be built.
 pub fn folder(package: &str, target: &str, program: &str) -> Option<PathBuf> {
     static BUILT: Mutex<BTreeMap<[String; 3], Option<PathBuf>>> = Mutex::new(BTreeMap::new());
-    let one = if cfg!(feature = "all") { "" } else { program };
+    let is_alone = !cfg!(feature = "all") || program == WITH_CHARTS;
+    let one = if is_alone { program } else { "" };
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     let made = built.entry([package, target, one].map(str::to_owned)).or_insert_with(|| {
         if has_library(target) {
@@ -62,6 +66,9 @@ fn build(package: &str, target: &str, program: &str) -> PathBuf {
         .env("DEFMT_LOG", "info");
     if !program.is_empty() {
         cargo.args(["--bin", program]);
+    }
+    if program == WITH_CHARTS {
+        cargo.args(["--features", "charts"]);
     }
     // Flags and wrappers of the host's build (coverage, for one) are not the chip's.
     for host in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "RUSTC_WRAPPER", "RUSTC_WORKSPACE_WRAPPER"]

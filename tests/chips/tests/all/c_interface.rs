@@ -12,9 +12,10 @@ use chips::program::image::Image;
 use planner_core::lattice::UNITS_PER_METRE;
 use planner_core::nalgebra::Point2;
 use planner_core::{
-    Angle, Area, Belief as _, Front, FrontStretch, Goal, Guard, Heading, Hull, KeepOut, Label,
-    Line, Lookahead, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose, PredictiveBelief,
-    Reliability, Sample, Site, SlopeWithin, StopReason, Tolerance, Track, Unicycle, VersionSpace,
+    Angle, Area, Belief as _, Chart, Charted, Front, FrontStretch, Goal, Guard, Heading, Hull,
+    KeepOut, Label, Line, Lookahead, Noise, NoisyBelief, Plan, Planner, PolygonArea, Pose,
+    PredictiveBelief, Reliability, Sample, Site, SlopeWithin, StopReason, Tolerance, Track,
+    Unicycle, VersionSpace,
 };
 use tests::build::{has_tool, scratch, skip};
 use tests::is_updating;
@@ -127,6 +128,66 @@ fn ground() -> Ground {
     ];
     let rounded = |(hull, radius): (_, i32)| KeepOut { hull, radius: radius.unsigned_abs() };
     PolygonArea::new(border, &keep_outs.map(rounded)).expect("an area")
+}
+
+/// The cells of `lake.c`.
+fn lake_cells() -> Vec<u32> {
+    let is_water = |column: usize, row: usize| {
+        let is_island = (16..24).contains(&column) && (14..22).contains(&row);
+        !is_island && column + row > 2 && column + row < 70
+    };
+    let mut cells = vec![0; 2 * 40];
+    for (column, row) in (0..40).flat_map(|row| (0..40).map(move |column| (column, row))) {
+        cells[2 * row + column / 32] |= u32::from(is_water(column, row)) << (column % 32);
+    }
+    cells
+}
+
+/// What `lake.c` prints in one of its modes.
+fn in_lake(mode: &str) -> String {
+    let cells = lake_cells();
+    let side = UNITS_PER_METRE.unsigned_abs() / 2;
+    let chart = Chart::new(Site::ORIGIN, side, [40, 40], &cells).expect("a chart");
+    let buoy = KeepOut::new(Hull::<8>::new(&[at(5.0, 6.0)]).expect("a point"), 1.0);
+    let border = Hull::of(chart.bounds());
+    let area: Ground = PolygonArea::new(border, &[buoy.expect("a disc")]).expect("an area");
+    let lake = Charted::new(area, Some(chart));
+    let unicycle = Unicycle::new(10_000, 1.57, 21, 50).expect("a grid");
+    let goal = slopes(if mode == "doubtful" { 0.21 } else { 0.0035 }, 900_000);
+    match mode {
+        "front" => {
+            let front = Front::bending(4.0).expect("a front");
+            let mut planner = Track::new(lake, unicycle, front, Noise::NONE).expect("settings");
+            let (mut pose, mut said) =
+                (Pose { site: at(10.0, 3.5), heading: Heading(0) }, String::new());
+            for _ in 0..60 {
+                let Plan::Move(motion) = planner.plan(pose) else { panic!("it goes on") };
+                pose = motion.target;
+                let here = Point2::<f64>::from(pose.site);
+                let (x, z) = (here.x - 10.0, here.y - 9.0);
+                let label = || {
+                    if x * x + z * z < 36.0 { Label::Positive } else { Label::Negative }
+                };
+                let label = motion.wants_label.then(label);
+                let number = label.map_or(2, Label::sign);
+                let heading = pose.heading.radians();
+                let _ = writeln!(said, "{:.9} {:.9} {heading:.9} {number}", here.x, here.y);
+                planner.observe(pose, label.map(Into::into)).expect("any label goes");
+            }
+            said
+        }
+        "doubtful" => {
+            let noise = Noise::new(0.85).expect("a probability");
+            let noisy = NoisyBelief::<36, 529>::new(&given(), noise).expect("four points");
+            let planner = Lookahead::new(lake, unicycle, noisy).expect("settings that agree");
+            flown(planner.until(Some(goal)), start(), true)
+        }
+        _ => {
+            let space = VersionSpace::<68>::new(&given()).expect("four points");
+            let planner = Lookahead::new(lake, unicycle, space).expect("settings that agree");
+            flown(planner.until(Some(goal)), start(), false)
+        }
+    }
 }
 
 type Finder<B> = Lookahead<Unicycle, B, Ground, SlopeWithin>;
@@ -336,6 +397,10 @@ fn a_c_program_flies_the_same_missions() {
     let following = program(&library, &here("following.c"));
     for (mode, here) in ["", "watch"].into_iter().zip(followed()) {
         assert_eq!(said(&following, mode), here, "{mode}");
+    }
+    let lake = program(&library, &here("lake.c"));
+    for mode in ["", "doubtful", "front"] {
+        assert_eq!(said(&lake, mode), in_lake(mode), "{mode}");
     }
     let asleep = program(&library, &here("asleep.c"));
     for mode in ["true", "doubtful", "blurred"] {

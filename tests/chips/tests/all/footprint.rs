@@ -3,7 +3,7 @@
 use std::fs;
 
 use chips::budget::book::{Book, Place};
-use chips::budget::dearest::{BOUND, by_kind, dearest};
+use chips::budget::dearest::{BOUND, by_kind, dearest, in_lakes};
 use chips::budget::footprint::{self, Footprint};
 use chips::budget::timing::{self, Flight};
 use chips::budget::workload::Workload;
@@ -80,6 +80,18 @@ fn no_plan_of_any_mission_passes_the_bound() {
     let few: Vec<_> = plans.iter().take(500).map(|it| it.0).collect();
     println!("the dearest: {few:?}");
     assert!(few[0] <= BOUND, "{:?}", plans[0]);
+}
+
+/// The same in lakes from maps, on 128 x 128 cells.
+#[test]
+fn no_plan_in_a_lake_passes_the_bound() {
+    let Some(elf) = bare(CHIP, "lakes") else { return };
+    let plans = in_lakes(&elf);
+    for (of, (most, number)) in by_kind(&plans) {
+        println!("{of}: {most} in mission {number}");
+    }
+    println!("median: {}", plans[plans.len() / 2].0);
+    assert!(plans[0].0 <= BOUND, "{:?}", plans[0]);
 }
 
 fn sizes(book: &mut Book, place: Place<'_>, elf: &[u8]) -> u32 {

@@ -23,6 +23,7 @@ use rayon::prelude::*;
 use tests::build::{has_tool, skip};
 use tests::cases;
 use tests::fronts::following;
+use tests::lakes;
 use tests::missions::{by_turns, of_any_vehicle, reading};
 
 use crate::machines::{Kind, NRF51, STM32, bare, riscv};
@@ -154,6 +155,14 @@ fn bare_cores_make_the_same_maps_of_fronts() {
     compare(riscv("track"), &fronts(cases(8, 40), 60));
     // A Cortex-M0 needs thirty times as many instructions: a few steps of two kinds.
     compare(bare(Core::M0, "track"), &fronts(cases(2, 24), cases(8, 60) as u32));
+}
+
+/// Lakes from maps, by every planner and vehicle, with positions and labels that err. The budget's test flies more of them,
+/// on a bare core.
+#[test]
+fn in_lakes_the_first_board_makes_the_traces_of_this_machine() {
+    let numbers = (0..cases(12, 144)).map(|it| 4 * it + it / 9);
+    compare(STM32, &numbers.map(|it| lakes::for_a_chip(it, 256, 24)).collect::<Vec<_>>());
 }
 
 #[test]
