@@ -211,8 +211,9 @@ unsafe fn begin_doubtful(
     let place = place::<Doubtful>(memory)?;
     // SAFETY: there is room, and it is aligned.
     let planner = unsafe {
+        (&raw mut (*place).kind).write(Kind::Other);
         let planner = Lookahead::of((parts.ground, parts.unicycle), NoisyBelief::NONE, goal);
-        place.write(Held { kind: Kind::Other, planner });
+        (&raw mut (*place).planner).write(planner);
         &mut (*place).planner
     };
     // In place: it is large.

@@ -7,6 +7,8 @@
 //! Tests are exact for motions that keep no distance. Where a distance is asked for, a square of it stands for the disc, so
 //! motions stay up to 1.5 times as far away.
 
+use core::ops::RangeInclusive;
+
 use crate::geometry::area::Area;
 use crate::geometry::hull::{Extent, edges};
 use crate::geometry::lattice::{LIMIT, Site, Vector};
@@ -159,8 +161,11 @@ impl<'a> Chart<'a> {
         for [_, z] in hull.iter().map(|it| from(*it)) {
             (least, most) = (least.min(z - by), most.max(z + by));
         }
-        let row_of = |z: i64| u16::try_from(z.div_euclid(side)).ok().filter(|it| *it < self.rows);
+        let row_of = |z: i64| u16::try_from(self.cells_to(z)?).ok().filter(|it| *it < self.rows);
         let (Some(first), Some(last)) = (row_of(least), row_of(most)) else { return false };
+        if let [a, b] = hull {
+            return self.holds_way([from(*a), from(*b)], by, first..=last);
+        }
         (first..=last).all(|row| {
             let low = i64::from(row) * side - by;
             let high = low + side + 2 * by;
@@ -179,6 +184,25 @@ impl<'a> Chart<'a> {
         })
     }
 
+    /// The same of a straight way in the rows that it meets. It may be long, so it takes no division in a row.
+    fn holds_way(&self, [a, b]: [[i64; 2]; 2], by: i64, mut rows: RangeInclusive<u16>) -> bool {
+        let [a, b] = if a[1] <= b[1] { [a, b] } else { [b, a] };
+        let side = i64::from(self.side);
+        let low = i64::from(*rows.start()) * side - by;
+        let high = low + side + 2 * by;
+        let [mut enters, mut leaves] = [low, high].map(|z| Walk::new((a, b), z, side));
+        rows.all(|row| {
+            let (enter, leave) = (enters.next([a, b]), leaves.next([a, b]));
+            let ends = [enter.0.min(leave.0) - by, enter.1.max(leave.1) + by];
+            self.is_open_between(row, ends)
+        })
+    }
+
+    /// How many cells fit in a length; `None` if it is negative.
+    fn cells_to(&self, length: i64) -> Option<u32> {
+        u32::try_from(length).ok()?.checked_div(self.side)
+    }
+
     /// The rows that a box meets with so much ground about it, at most.
     pub(crate) fn rows_of(&self, extent: Extent) -> u32 {
         extent.height().checked_div(self.side).unwrap_or(0).saturating_add(2).min(self.rows.into())
@@ -187,8 +211,9 @@ impl<'a> Chart<'a> {
     /// Whether all cells of a row from one to another coordinate are open, or that one.
     fn is_open_between(&self, row: u16, [left, right]: [i64; 2], own: Option<[u16; 2]>) -> bool {
         let own = own.filter(|it| it[1] == row).map(|it| u32::from(it[0]));
-        let column = |x: i64| u32::try_from(x.div_euclid(i64::from(self.side))).ok();
-        let (Some(first), Some(last)) = (column(left), column(right)) else { return false };
+        let (Some(first), Some(last)) = (self.cells_to(left), self.cells_to(right)) else {
+            return false;
+        };
         last < self.columns.into()
             && (first / 32..=last / 32).all(|word| {
                 let from = if word == first / 32 { first % 32 } else { 0 };
@@ -227,14 +252,66 @@ impl<'a> Chart<'a> {
     }
 }
 
+/// The whole x of a straight way from a lower to a higher end, at one z after the other.
+struct Walk {
+    z: i64,
+    /// The x at that z, rounded down, and what is left of it, of the way's height.
+    x: i64,
+    rest: i64,
+    height: i64,
+    /// From one z to the next.
+    step: [i64; 3],
+}
+
+impl Walk {
+    /// From a z on, and one side further each time.
+    fn new(([x0, z0], [x1, z1]): ([i64; 2], [i64; 2]), z: i64, side: i64) -> Self {
+        let (rise, height) = (x1 - x0, z1 - z0);
+        // Differences are below 2^30, and z is less than a row and a distance away, so products are below 2^62.
+        let split = |product: i64| {
+            let part = product.checked_div_euclid(height).unwrap_or(0);
+            (part, product - part * height)
+        };
+        let (part, rest) = split(rise * (z - z0));
+        let (by, more) = split(rise * side);
+        Self { z, x: x0 + part, rest, height, step: [side, by, more] }
+    }
+
+    /// The least and the greatest whole x at the present z, or at the end of the way that is nearer. Of a level way these are
+    /// the ends of its own.
+    fn next(&mut self, [a, b]: [[i64; 2]; 2]) -> (i64, i64) {
+        let Self { z, x, rest, height, step: [side, by, more] } = *self;
+        self.z += side;
+        self.x += by;
+        self.rest += more;
+        if self.rest >= height {
+            self.rest -= height;
+            self.x += 1;
+        }
+        if height == 0 {
+            (a[0].min(b[0]), a[0].max(b[0]))
+        } else if z <= a[1] {
+            (a[0], a[0])
+        } else if z >= b[1] {
+            (b[0], b[0])
+        } else {
+            (x, x + i64::from(rest > 0))
+        }
+    }
+}
+
 /// The least and the greatest whole x of the point with such a z on a segment from a lower to a higher end. A level segment
 /// has all of its x.
 fn along([x0, z0]: [i64; 2], [x1, z1]: [i64; 2], z: i64) -> (i64, i64) {
     // Differences are below 2^30, so products are below 2^60.
     let (product, height) = ((x1 - x0) * (z - z0), z1 - z0);
-    match (product.checked_div_euclid(height), product.checked_rem_euclid(height)) {
-        (Some(part), Some(rest)) => (x0 + part, x0 + part + i64::from(rest > 0)),
-        _ => (x0.min(x1), x0.max(x1)),
+    if height > 0 && (product == 0 || z == z1) {
+        let x = if z == z1 { x1 } else { x0 };
+        return (x, x);
+    }
+    match product.checked_div_euclid(height) {
+        Some(part) => (x0 + part, x0 + part + i64::from(part * height < product)),
+        None => (x0.min(x1), x0.max(x1)),
     }
 }
 
@@ -291,6 +368,10 @@ mod tests {
                 let apart = |less: i32, by: u32| {
                     closed.clone().all(|cell| are_apart(&square(&chart, cell, less), hull, by))
                 };
+                if let [a, b] = *hull {
+                    // As hulls of more corners are judged.
+                    assert_eq!(chart.holds(hull, by), chart.holds(&[a, b, b], by), "{hull:?}");
+                }
                 if chart.holds(hull, by) {
                     held += 1;
                     // Coordinates along the hull are rounded, and a cell may be touched.
