@@ -6,13 +6,13 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
 import { resolve } from 'node:path';
 
-import { launched } from './launched.mjs';
+import { launch } from './looks.mjs';
 
 const [file, picture] = process.argv.slice(2);
 const STEP_S = 0.5;
 /** The last picture stays so many steps longer. */
 const REST = 4;
-const browser = await launched();
+const browser = await launch();
 const page = await browser.newPage({ viewport: { width: 1280, height: 800 }, colorScheme: 'light', reducedMotion: 'reduce' });
 await page.goto(pathToFileURL(resolve(file)).href);
 await page.waitForSelector('#controls:not([hidden])');

@@ -5,21 +5,14 @@
 //
 // saves what the page looked like in the folder. Ends with status 1 and a line for each fault.
 
-import { mkdirSync, readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { mkdirSync } from 'node:fs';
 import { basename, join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { launched } from './launched.mjs';
+import { check, conclude, launch, checkLooks } from './looks.mjs';
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const [file, folder, extent] = process.argv.slice(2);
 const name = basename(file, '.html');
-const faults = [];
-
-function check(isTrue, what) {
-  if (!isTrue) faults.push(what);
-}
 
 /** What a step shows: its number, its words, its pictures. */
 function shown(page) {
@@ -107,19 +100,7 @@ async function check_first_view(page, what) {
   check(lowest <= 800, `${what}: a map ends at ${lowest} px`);
 }
 
-/** Nothing wider than the window, and no finding. */
-async function check_looks(page, what) {
-  const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  check(content <= window, `${what}: ${content} px in a window of ${window}`);
-  await page.evaluate(AXE);
-  const { violations, passes } = await page.evaluate(() => globalThis.axe.run());
-  check(passes.length > 20, `${what}: axe looked at ${passes.length} rules only`);
-  for (const { id, help, nodes } of violations) {
-    check(false, `${what}: axe: ${id}: ${help}: ${nodes.map((it) => it.target.join(' ')).join(', ')}`);
-  }
-}
-
-const browser = await launched();
+const browser = await launch();
 mkdirSync(folder, { recursive: true });
 const address = pathToFileURL(resolve(file)).href;
 const looks = [[1280, 800, 'light'], [360, 740, 'dark']];
@@ -139,7 +120,7 @@ for (const [width, height, colorScheme] of looks) {
     if (colorScheme === 'light') await check_stepping(page);
     await page.fill('#slider', '5');
     await page.waitForTimeout(500); // the robot has come to rest
-    await check_looks(page, `${what}, chapter ${chapter}`);
+    await checkLooks(page, `${what}, chapter ${chapter}`);
     await page.screenshot({ path: join(folder, `${name}-${width}-${colorScheme}-${chapter}.png`), fullPage: true });
   }
   await context.close();
@@ -159,6 +140,4 @@ const ink = await paper.evaluate(() => getComputedStyle(document.body).color);
 check(ink === 'rgb(0, 0, 0)', `on paper: ink is ${ink}`);
 await paper.pdf({ path: join(folder, `${name}.pdf`), format: 'A4', printBackground: true });
 await browser.close();
-for (const fault of faults) console.log(fault);
-console.log(faults.length === 0 ? `${name}: as it should be` : `${name}: ${faults.length} faults`);
-process.exit(faults.length === 0 ? 0 : 1);
+conclude(name);

@@ -33,8 +33,8 @@ const FLY = `async ({ scenarios, module }) => {
 }`;
 
 async function inBrowser() {
-  const { launched } = await import('./launched.mjs');
-  const browser = await launched();
+  const { launch } = await import('./looks.mjs');
+  const browser = await launch();
   const page = await browser.newPage();
   const flown = await page.evaluate(`(${FLY})(${JSON.stringify({ scenarios, module: part('module') })})`);
   await browser.close();

@@ -6,22 +6,15 @@
 // saves in the folder what it looked like, and what was copied as TOML, Rust and Python. Ends with status 1 and a line for
 // each fault.
 
-import { readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-import { launched } from './launched.mjs';
+import { check, checkLooks, conclude, launch } from './looks.mjs';
 
-const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const [file, folder] = process.argv.slice(2);
 const address = pathToFileURL(resolve(file)).href;
-const browser = await launched();
-const faults = [];
-
-function check(isTrue, what) {
-  if (!isTrue) faults.push(what);
-}
+const browser = await launch();
 
 /** A page that has flown its first mission. */
 async function opened(what, options, at = address) {
@@ -59,13 +52,8 @@ const toml = (page) => page.inputValue('#text');
 
 /** Nothing wider than the window, nothing too small for a finger, no finding. */
 async function looks(page, what) {
-  const [content, window] = await page.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
-  check(content <= window, `${what}: ${content} px in a window of ${window}`);
   await page.evaluate(() => { document.getElementById('text-of').open = true; });
-  await page.evaluate(AXE);
-  const { violations, passes } = await page.evaluate(() => globalThis.axe.run());
-  check(passes.length > 20, `${what}: axe looked at ${passes.length} rules only`);
-  for (const { id, help, nodes } of violations) check(false, `${what}: axe: ${id}: ${help}: ${nodes.map((it) => it.target.join(' ')).join(', ')}`);
+  await checkLooks(page, what);
   await page.evaluate(() => { document.getElementById('text-of').open = false; scrollTo(0, 0); });
   await page.screenshot({ path: join(folder, `playground-${what.replaceAll(/\W+/g, '-')}.png`) });
 }
@@ -196,6 +184,4 @@ await byMouse();
 await byTouch();
 await byKeys();
 await browser.close();
-for (const fault of faults) console.log(fault);
-console.log(faults.length === 0 ? 'the playground: as it should be' : `the playground: ${faults.length} faults`);
-process.exit(faults.length === 0 ? 0 : 1);
+conclude('the playground');

@@ -39,7 +39,7 @@ pub(crate) struct FlyArgs {
     #[arg(long, value_name = "ADDRESS")]
     mavlink: Option<String>,
     /// Print what an ideal vehicle would be sent, and send nothing
-    #[arg(long, conflicts_with_all = ["trace", "figure", "candidates", "report", "mcap", "map", "format"])]
+    #[arg(long, conflicts_with_all = ["trace", "figure", "candidates", "report", "mcap", "map", "format", "live"])]
     dry_run: bool,
     /// Who tells labels: the name of a named value, or channel:N of the remote control
     #[arg(long, value_name = "NAME|channel:N")]
@@ -89,12 +89,13 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
         let failure = failure.map(|it| (anyhow!("{}: {it}", run.name()), FAILED));
         return Ok(Done { text: sent::table(control.link().sent()), failure });
     };
+    let mut live = run.live(&mission)?;
     let outputs = prepare_all(&[run.input()], &run.outputs())?;
     let socket = Socket::open(address, system).context("--mavlink")?;
     interruption::defer();
     let mut control = Control::new(socket, pilot, interruption::deferred);
     let name = run.name();
-    match flight::fly(mission, &mut control) {
+    match flight::fly_shown(mission, &mut control, live.as_mut()) {
         Ok(flight) => {
             let text = run.tell(outputs, &flight.recording)?;
             let failure = flight.failure.map(|(why, farewell)| {
@@ -108,6 +109,7 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
             Ok(Done { text, failure })
         }
         Err(why) => {
+            live.iter_mut().for_each(|live| live.break_off(&why));
             let failure = anyhow!("{name}: {why}; nothing that moves was sent");
             Ok(Done { text: String::new(), failure: Some((failure, status(&why))) })
         }

@@ -129,6 +129,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     {
         bail!("{}: found a stream, expected a file with --resume", path.display());
     }
+    let live = args.run.live(&mission)?;
     let own = [("--timing", args.timing.as_deref()), ("--log", args.log.as_deref())];
     let asked = [&own[..], &args.run.outputs()].concat();
     let mut outputs = prepare_all(&[args.run.input(), (chip, board)], &asked)?.into_iter();
@@ -146,6 +147,7 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     };
     let mut player =
         Player::new(&mission, labels, flight::start_number()).with_context(|| args.run.name())?;
+    player = player.shown(live);
     if let Some(path) = growing {
         player = player.keeping(path)?;
     }
@@ -174,9 +176,16 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     {
         announce(logbook.farewell());
     }
+    if let (Some(live), Err(why)) = (player.live(), &flown) {
+        live.break_off(why);
+    }
     let turnarounds = flown?;
     let played = player.finish_as_far_as_flown().with_context(|| args.run.name());
     let (mut played, failure) = played?;
+    if let Some(live) = &mut played.live {
+        failure.iter().for_each(|why| live.say(why));
+        live.end(&played.recording);
+    }
     let timings = Timings::new(&played, &turnarounds);
     let rows = timings.csv()?;
     let mut text = args.run.tell(outputs, &played.recording)?;

@@ -1,6 +1,8 @@
 //! `run`: one mission.
 
 use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::Duration;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -17,6 +19,7 @@ use crate::mission::trace;
 use crate::output::file::{Output, prepare, prepare_all};
 use crate::output::plain;
 use crate::report::examples::{Flown, side_by_side};
+use crate::report::live::{Address, Live, USUAL};
 use crate::report::page::{Chapter, Page};
 use crate::report::picture::Picture;
 use crate::report::pieces::Pieces;
@@ -62,6 +65,15 @@ pub(crate) struct Run {
     /// The same as tracks and waypoints, for chart plotters and phones
     #[arg(long, value_name = "FILE.gpx")]
     pub(crate) gpx: Option<PathBuf>,
+    /// Serve the page while the mission is flown, here or at HOST:PORT; port 0 takes any [default: 127.0.0.1:8043]
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = USUAL
+    )]
+    pub(crate) live: Option<Address>,
     /// What to print
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: Format,
@@ -90,20 +102,39 @@ pub(crate) struct RunArgs {
         value_name = "PLANNER,...",
         value_delimiter = ',',
         requires = "report",
-        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map", "geojson", "gpx"]
+        conflicts_with_all = ["algorithm", "trace", "figure", "candidates", "mcap", "map", "geojson", "gpx", "live"]
     )]
     compare: Vec<Algorithm>,
+    /// Time between steps with --live, 0 to 3600 [default: 1]
+    #[arg(long, value_name = "SECONDS", requires = "live", value_parser = pace)]
+    pace: Option<Duration>,
+}
+
+fn pace(text: &str) -> Result<Duration> {
+    let found = text.parse().ok().filter(|it| (0.0..=3600.0).contains(it));
+    found.map(Duration::from_secs_f64).ok_or_else(|| anyhow!("expected seconds, 0 to 3600"))
 }
 
 /// Flies it, and what to print.
 pub(crate) fn run(args: &RunArgs) -> Result<Done> {
-    let RunArgs { run, compare } = args;
+    let RunArgs { run, compare, pace } = args;
     if !compare.is_empty() {
         return run.compare(compare);
     }
     let mission = run.mission()?;
+    let mut live = run.live(&mission)?;
     let outputs = prepare_all(&[run.input()], &run.outputs())?;
-    let (recording, refusal) = Recording::until_refusal(&mission);
+    let pace = pace.unwrap_or(Duration::from_secs(1));
+    let pause = |live: &Option<Live>| live.is_some().then(|| thread::sleep(pace));
+    pause(&live);
+    let (recording, refusal) = Recording::until_refusal_watched(&mission, |recorder| {
+        live.iter_mut().for_each(|live| live.step(recorder));
+        pause(&live);
+    });
+    if let Some(live) = &mut live {
+        refusal.iter().for_each(|why| live.say(why));
+        live.end(&recording);
+    }
     let text = run.tell(outputs, &recording)?;
     Ok(run.done(text, refusal))
 }
@@ -149,6 +180,11 @@ impl Run {
     /// What figures and pages are called.
     fn title(&self) -> String {
         plain::name(&self.scenario.file_stem().unwrap_or_default().to_string_lossy())
+    }
+
+    /// The live page of a mission, if one is asked for.
+    pub(crate) fn live(&self, mission: &Mission) -> Result<Option<Live>> {
+        self.live.as_ref().map(|it| Live::open(it, &self.title(), mission)).transpose()
     }
 
     pub(crate) fn mission(&self) -> Result<Mission> {

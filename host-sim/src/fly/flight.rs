@@ -18,6 +18,7 @@ use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::Ending;
 use crate::mission::terrain::{Terrain, check_inside};
 use crate::output::notes::{announce, count, warn};
+use crate::report::live::Live;
 
 /// How long a round waits for a message before it sends what is due.
 const ROUND: Duration = Duration::from_millis(20);
@@ -86,7 +87,7 @@ impl<L: Link> Control<L> {
     }
 
     /// Waits until the vehicle is ready to be flown, and prints what is missing.
-    fn prepare(&mut self) -> Result<(), Failure> {
+    fn prepare(&mut self, live: Option<&Live>) -> Result<(), Failure> {
         let (mut awaited, mut since, mut is_said) = (None, self.link.now(), false);
         while !self.pilot.is_ready() {
             if let Some(failure) = self.pilot.failure() {
@@ -100,6 +101,7 @@ impl<L: Link> Control<L> {
             if let Some(awaited) = awaited.as_ref().filter(|_| !is_said && now >= since + PATIENCE)
             {
                 announce(format_args!("waiting for {awaited}"));
+                live.iter().for_each(|it| it.say(format_args!("waiting for {awaited}")));
                 is_said = true;
             }
             self.round();
@@ -209,9 +211,25 @@ fn tell(Legs { motions, seconds, off, off_most, tolerance }: &Legs) {
 ///
 /// # Errors
 /// Why the flight did not begin. No setpoint was sent then.
-pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Flight, Failure> {
-    control.prepare()?;
+pub fn fly<L: Link>(mission: Mission, control: &mut Control<L>) -> Result<Flight, Failure> {
+    fly_shown(mission, control, None)
+}
+
+/// The same, shown on a live page, if there is one.
+///
+/// # Errors
+/// As [`fly`].
+pub fn fly_shown<L: Link>(
+    mut mission: Mission,
+    control: &mut Control<L>,
+    mut live: Option<&mut Live>,
+) -> Result<Flight, Failure> {
+    control.prepare(live.as_deref())?;
     mission.start = control.start(&mission)?;
+    if let Some(live) = &mut live {
+        live.begin(&mission);
+        live.say("the vehicle is ready");
+    }
     control.pilot.reads(mission.readings);
     let mut planner = mission.planner();
     let mut recorder = Recorder::new(mission.clone());
@@ -229,6 +247,7 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
                 labels += u32::from(step.reading.is_some());
                 recorder.pass(&agent.body().passed);
                 recorder.take(&step, None, agent.planner.belief());
+                live.iter_mut().for_each(|it| it.step(&recorder));
             }
             Ok(Event::Stopped(reason)) => {
                 ending = Ending::Stopped(reason);
@@ -257,8 +276,15 @@ pub fn fly<L: Link>(mut mission: Mission, control: &mut Control<L>) -> Result<Fl
     if failure.is_none() && !control.pilot.is_at_rest() {
         warn("the vehicle", &farewell);
     }
-    let told = |failure| (failure, farewell);
     let recording = recorder.end(Flown { ending, belief });
+    if let Some(live) = live {
+        match &failure {
+            Some(why) => live.say(format_args!("{why}; {farewell}")),
+            None => live.say(&farewell),
+        }
+        live.end(&recording);
+    }
+    let told = |failure| (failure, farewell);
     if let Some(legs) = &recording.results.end.flown {
         tell(legs);
     }

@@ -26,6 +26,7 @@ use crate::mission::read_out::AnyPlanner;
 use crate::mission::recording::{Recorder, Recording};
 use crate::mission::results::{Ending, StepResult};
 use crate::mission::trace;
+use crate::report::live::Live;
 use crate::world::on_the_way::Way;
 use crate::world::robot::{Glimpse, Robot};
 
@@ -70,6 +71,8 @@ pub struct Player {
     restarts: u32,
     /// Where steps are kept as they are taken.
     logbook: Option<Logbook>,
+    /// Where steps are shown as they are taken.
+    live: Option<Live>,
     ending: Took,
     clock: Option<ClockRate>,
     /// How the mission ended, or why it came to nothing.
@@ -103,6 +106,8 @@ pub struct Played {
     pub clock: ClockRate,
     /// The mission on disc, if it was to be kept there: all but its end.
     pub logbook: Option<Logbook>,
+    /// Where it is shown, if it is: all but its end.
+    pub live: Option<Live>,
 }
 
 impl Player {
@@ -132,6 +137,7 @@ impl Player {
             resumes: false,
             restarts: 0,
             logbook: None,
+            live: None,
             ending: Took::default(),
             clock: None,
             outcome: None,
@@ -154,6 +160,17 @@ impl Player {
         let start = self.recorder.start();
         let logbook = Logbook::open(path, &start, |read| Ok(trace::step(self.retrace(&read)?)))?;
         Ok(Self { logbook: Some(logbook), ..self.resuming() })
+    }
+
+    /// The same, shown on a live page, if there is one.
+    #[must_use]
+    pub fn shown(self, live: Option<Live>) -> Self {
+        Self { live, ..self }
+    }
+
+    /// Where it is shown.
+    pub const fn live(&mut self) -> Option<&mut Live> {
+        self.live.as_mut()
     }
 
     /// Where its steps are kept.
@@ -468,6 +485,9 @@ impl Player {
         self.recorder.take(&step, self.robot.true_pose(), self.planner.belief());
         self.passed.push(passed);
         self.fronts.push(self.planner.front());
+        if let Some(live) = &mut self.live {
+            live.step(&self.recorder);
+        }
         match (&mut self.logbook, self.recorder.last()) {
             (Some(logbook), Some(step)) => logbook.take(step),
             _ => Ok(()),
@@ -544,7 +564,7 @@ impl Player {
     /// # Errors
     /// When it is not over, or did not begin.
     pub fn finish_as_far_as_flown(self) -> Result<(Played, Option<anyhow::Error>)> {
-        let Self { recorder, planner, took, ending, clock, outcome, logbook, .. } = self;
+        let Self { recorder, planner, took, ending, clock, outcome, logbook, live, .. } = self;
         let unfinished = || anyhow!("the mission broke off after step {}", recorder.steps().len());
         let (reason, failure, clock) = match (outcome.ok_or_else(unfinished)?, clock) {
             (Ok(reason), Some(clock)) => (reason, None, clock),
@@ -554,6 +574,6 @@ impl Player {
         };
         let flown = Flown { ending: reason, belief: planner.belief().boxed() };
         let recording = recorder.end(flown);
-        Ok((Played { recording, took, ending, clock, logbook }, failure))
+        Ok((Played { recording, took, ending, clock, logbook, live }, failure))
     }
 }

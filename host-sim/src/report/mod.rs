@@ -12,6 +12,8 @@ pub(crate) mod front;
 pub mod fronts;
 pub mod ground;
 #[cfg(not(target_family = "wasm"))]
+pub mod live;
+#[cfg(not(target_family = "wasm"))]
 pub mod log;
 pub(crate) mod look;
 mod map;

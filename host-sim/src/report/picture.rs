@@ -132,8 +132,8 @@ impl Drawn {
     }
 }
 
-/// The boundary of a mission's world, at the start and after so many motions if it moves.
-fn truth(mission: &Mission, motions: usize) -> Vec<Drawn> {
+/// The boundary of a mission's world: if it moves, at the start, and at the end after so many motions.
+pub(crate) fn truth(mission: &Mission, motions: Option<usize>) -> Vec<Drawn> {
     let (world, area) = (&mission.world, &mission.config.area);
     let there = if mission.algorithm.seeks_line() { TRUTH } else { TRUE_FRONT };
     if let Some(line) = world.line() {
@@ -147,11 +147,11 @@ fn truth(mission: &Mission, motions: usize) -> Vec<Drawn> {
         let ways = world.after(motions).ways(&Polygon::from(*area));
         Drawn::new(format!("{what}{when}"), stroke, ways)
     };
-    if world.moves() {
-        vec![at(0, " at the start", PAST_TRUTH), at(motions, " at the end", there)]
-    } else {
-        vec![at(0, "", there)]
+    if !world.moves() {
+        return vec![at(0, "", there)];
     }
+    let end = motions.map(|motions| at(motions, " at the end", there));
+    [at(0, " at the start", PAST_TRUTH)].into_iter().chain(end).collect()
 }
 
 impl Picture {
@@ -267,7 +267,7 @@ impl Picture {
             given: oracle.len(),
             start: Some(Point2::from(mission.start.site)),
             stops: stops(recording),
-            truth: truth(mission, recording.steps.len()),
+            truth: truth(mission, Some(recording.steps.len())),
             lines,
             follows,
             front: Pieces::of(results),
@@ -350,23 +350,31 @@ impl Picture {
 /// The ends of the steps.
 fn stops(Recording { mission, results, .. }: &Recording) -> Vec<Stop> {
     let mut from = Point2::from(mission.start.site);
-    let stop = |step: &StepResult| Stop {
-        way: {
-            let to = Point2::new(step.pose.x, step.pose.z);
-            let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
-            let turn = if is_car { step.action.w.into() } else { 0.0 };
-            arc(std::mem::replace(&mut from, to), to, turn)
-        },
-        at: Point2::new(step.pose.x, step.pose.z),
-        truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
-        heading: step.pose.heading,
-        mark: match (step.label, step.expected) {
-            (None, Some(_)) => Some(MISSING),
-            (None | Some(0), _) => Some(UNREAD).filter(|_| mission.algorithm.seeks_line()),
-            _ => None,
-        },
+    let stop = |step: &StepResult| {
+        let stop = Stop::of(mission, from, step);
+        from = stop.at;
+        stop
     };
     results.steps.iter().map(stop).collect()
+}
+
+impl Stop {
+    /// The end of a step that began at a place.
+    pub(crate) fn of(mission: &Mission, from: Point2<f64>, step: &StepResult) -> Self {
+        let at = Point2::new(step.pose.x, step.pose.z);
+        let is_car = matches!(mission.vehicle, AnyVehicle::Car(_));
+        Self {
+            way: arc(from, at, if is_car { step.action.w.into() } else { 0.0 }),
+            at,
+            truly: step.true_pose.map(|pose| Point2::new(pose.x, pose.z)),
+            heading: step.pose.heading,
+            mark: match (step.label, step.expected) {
+                (None, Some(_)) => Some(MISSING),
+                (None | Some(0), _) => Some(UNREAD).filter(|_| mission.algorithm.seeks_line()),
+                _ => None,
+            },
+        }
+    }
 }
 
 /// A reading as a sample, if it is of one side.

@@ -66,6 +66,11 @@ pub const NAMES: [&str; 3] = ["centre of the version space", "maximum margin", B
 /// Their names where labels may err.
 const NOISY_NAMES: [&str; 3] = ["posterior mean", "margin of the likeliest", BISECTOR];
 
+/// What the recommended estimate is called, where labels may err or not.
+pub(crate) const fn recommended(labels_err: bool) -> &'static str {
+    if labels_err { NOISY_NAMES[0] } else { NAMES[0] }
+}
+
 /// Names and lines of a mission's estimates, the recommended one first.
 pub fn estimates(results: &Results) -> [(&'static str, Option<LineRecord>); 3] {
     let [centre, margin, bisector] = if results.end.best.is_some() { NOISY_NAMES } else { NAMES };
@@ -303,14 +308,28 @@ fn audited(audit: &AuditRecord) -> String {
 /// What speaks against a straight, still line, or against a front as it was told, in words.
 fn warning(end: &End) -> Option<String> {
     let AlarmRecord { step, evidence, suspect } = end.alarm?;
-    let level = Alarm::ALARM;
     let alarm = match suspect {
         Suspect::Coin if end.front.is_some() => front::BENDS_MORE.to_owned(),
         _ => Alarm { evidence, suspect }.to_string(),
     };
-    let name = if evidence >= level { "Alarm" } else { "Warning" };
-    let much = if evidence < 1e4 { format!("{evidence:.0}") } else { "over 10000".to_owned() };
+    let (name, level) = (level(evidence), Alarm::ALARM);
+    let much = much(evidence);
     Some(format!("{name}: {alarm}. The evidence is {much} at step {step}; {level} is an alarm.\n"))
+}
+
+/// What evidence against the model is called.
+pub(crate) fn level(evidence: f32) -> &'static str {
+    if evidence >= Alarm::ALARM { "Alarm" } else { "Warning" }
+}
+
+/// The evidence against the model after a step, in words.
+pub(crate) fn evidence(evidence: f32) -> String {
+    let (much, level) = (much(evidence), Alarm::ALARM);
+    format!("The labels speak against the model: the evidence is {much}, {level} is an alarm")
+}
+
+fn much(evidence: f32) -> String {
+    if evidence < 1e4 { format!("{evidence:.0}") } else { "over 10000".to_owned() }
 }
 
 /// What a mission is, before it begins: sentences, a line each.

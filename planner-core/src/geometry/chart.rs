@@ -164,7 +164,7 @@ impl<'a> Chart<'a> {
         let row_of = |z: i64| u16::try_from(self.cells_to(z)?).ok().filter(|it| *it < self.rows);
         let (Some(first), Some(last)) = (row_of(least), row_of(most)) else { return false };
         if let [a, b] = hull {
-            return self.holds_way([from(*a), from(*b)], by, first..=last);
+            return self.holds_way(own, [from(*a), from(*b)], by, first..=last);
         }
         (first..=last).all(|row| {
             let low = i64::from(row) * side - by;
@@ -185,7 +185,13 @@ impl<'a> Chart<'a> {
     }
 
     /// The same of a straight way in the rows that it meets. It may be long, so it takes no division in a row.
-    fn holds_way(&self, [a, b]: [[i64; 2]; 2], by: i64, mut rows: RangeInclusive<u16>) -> bool {
+    fn holds_way(
+        &self,
+        own: Option<[u16; 2]>,
+        [a, b]: [[i64; 2]; 2],
+        by: i64,
+        mut rows: RangeInclusive<u16>,
+    ) -> bool {
         let [a, b] = if a[1] <= b[1] { [a, b] } else { [b, a] };
         let side = i64::from(self.side);
         let low = i64::from(*rows.start()) * side - by;
@@ -194,7 +200,7 @@ impl<'a> Chart<'a> {
         rows.all(|row| {
             let (enter, leave) = (enters.next([a, b]), leaves.next([a, b]));
             let ends = [enter.0.min(leave.0) - by, enter.1.max(leave.1) + by];
-            self.is_open_between(row, ends)
+            self.is_open_between(row, ends, own)
         })
     }
 

@@ -4,6 +4,7 @@ mod examples;
 mod figures;
 mod golden;
 mod links;
+mod live;
 mod logs;
 mod package;
 mod page;

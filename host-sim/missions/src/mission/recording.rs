@@ -202,9 +202,19 @@ impl Recorder {
         }
     }
 
+    /// The mission.
+    pub const fn mission(&self) -> &Mission {
+        &self.mission
+    }
+
+    /// What is known now.
+    pub fn belief(&self) -> &dyn ReadOut {
+        &*self.belief
+    }
+
     /// What the mission begins with.
     pub fn start(&self) -> Start {
-        start(&self.mission)
+        Start::of(&self.mission)
     }
 
     /// Steps so far.
@@ -283,7 +293,7 @@ impl Recorder {
             diagnosis: seeks_line.then(diagnosis).flatten().map(Box::new),
             flown: Legs::of(&results.iter().filter_map(|step| step.flown).collect::<Vec<_>>()),
         };
-        let results = Results { start: start(&mission), steps: results, end };
+        let results = Results { start: Start::of(&mission), steps: results, end };
         Recording { mission, steps, results, before, belief }
     }
 }
@@ -306,10 +316,19 @@ impl Recording {
     /// Flies a mission and records it as far as it goes. The error names the sample that the planner refused, if one
     /// broke the mission off.
     pub fn until_refusal(mission: &Mission) -> (Self, Option<anyhow::Error>) {
+        Self::until_refusal_watched(mission, |_| ())
+    }
+
+    /// The same; `watch` sees all that is recorded after each step.
+    pub fn until_refusal_watched(
+        mission: &Mission,
+        mut watch: impl FnMut(&Recorder),
+    ) -> (Self, Option<anyhow::Error>) {
         let mut recorder = Recorder::new(mission.clone());
         let (flown, refused) = mission.fly_in_sight(|step, sight, belief| {
             recorder.pass(sight.passed);
             recorder.take(step, sight.true_pose, belief);
+            watch(&recorder);
         });
         let refusal = refused.map(|it| recorder.refusal(&it));
         (recorder.end(flown), refusal)
@@ -352,37 +371,40 @@ pub fn beside_truth(mission: &Mission, world: &World, estimates: Estimates) -> E
     EstimateRecords::beside(estimates, error)
 }
 
-fn start(mission: &Mission) -> Start {
-    Start {
-        version: VERSION,
-        algorithm: mission.algorithm,
-        seed: mission.seed,
-        varrho: mission.config.weight.value(),
-        area: mission.config.area.into(),
-        keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
-        oracle: mission.oracle().iter().map(Into::into).collect(),
-        bounds: (!mission.bounds.is_empty()).then_some(mission.bounds),
-        vehicle: VehicleTable::of(mission.vehicle),
-        tolerance: mission.tolerance_record(),
-        pose: mission.start.into(),
-        truth: mission.world.line().map(|line| (*line).into()),
-        boundary: mission.world.record(),
-        sensor: mission.sensor.iter().map(Into::into).collect(),
-        p: mission.noise.map_or(1.0, |noise| noise.p),
-        p_told: mission.p_told.map(PTold::from),
-        price: mission.asking.price,
-        labels: mission.asking.labels,
-        worth: (mission.asking.worth > 0.0).then_some(mission.asking.worth),
-        labels_err: mission.noise.is_some(),
-        readings: (mission.readings > 1).then_some(mission.readings),
-        steps: mission.steps,
-        seek: SeekTable::of(mission.seeking),
-        front: (!mission.algorithm.seeks_line())
-            .then(|| FrontTable::told(mission.front, mission.watch)),
-        slope_arcs: mission
-            .given
-            .lines()
-            .map_or(vec![[-90.0, 90.0]], |lines| lines.slope_arc().intervals_deg().to_vec()),
+impl Start {
+    /// What a mission begins with.
+    pub fn of(mission: &Mission) -> Self {
+        Self {
+            version: VERSION,
+            algorithm: mission.algorithm,
+            seed: mission.seed,
+            varrho: mission.config.weight.value(),
+            area: mission.config.area.into(),
+            keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
+            oracle: mission.oracle().iter().map(Into::into).collect(),
+            bounds: (!mission.bounds.is_empty()).then_some(mission.bounds),
+            vehicle: VehicleTable::of(mission.vehicle),
+            tolerance: mission.tolerance_record(),
+            pose: mission.start.into(),
+            truth: mission.world.line().map(|line| (*line).into()),
+            boundary: mission.world.record(),
+            sensor: mission.sensor.iter().map(Into::into).collect(),
+            p: mission.noise.map_or(1.0, |noise| noise.p),
+            p_told: mission.p_told.map(PTold::from),
+            price: mission.asking.price,
+            labels: mission.asking.labels,
+            worth: (mission.asking.worth > 0.0).then_some(mission.asking.worth),
+            labels_err: mission.noise.is_some(),
+            readings: (mission.readings > 1).then_some(mission.readings),
+            steps: mission.steps,
+            seek: SeekTable::of(mission.seeking),
+            front: (!mission.algorithm.seeks_line())
+                .then(|| FrontTable::told(mission.front, mission.watch)),
+            slope_arcs: mission
+                .given
+                .lines()
+                .map_or(vec![[-90.0, 90.0]], |lines| lines.slope_arc().intervals_deg().to_vec()),
+        }
     }
 }
 

@@ -10,14 +10,18 @@ function around(places) {
   return bounds;
 }
 
-/** What a map shows: the area, or of a front the track alone if that is small. */
+/** The places of a scene that a map has to show. */
+function placesOf({ at, motion, front }) {
+  return [at, ...(motion?.way ?? []), ...(front?.ends ?? [])];
+}
+
+/** What a map shows: the area, or of a front the track alone if that is small. A track that grows gets more room. */
 function shown(flight) {
   const longest = (it) => Math.max(it.right - it.left, it.top - it.bottom);
   const area = around(flight.area);
   if (!flight.follows) return { bounds: area, isPart: false };
-  const track = flight.scenes.flatMap(({ at, motion, front }) => [at, ...(motion?.way ?? []), ...(front?.ends ?? [])]);
-  const part = around([...track, ...flight.given.map(([at]) => at)]);
-  const size = longest(part);
+  const part = around([...flight.scenes.flatMap(placesOf), ...flight.given.map(([at]) => at)]);
+  const size = flight.isGrowing ? Math.max(1.5 * longest(part), longest(area) / 8) : longest(part);
   if (size === 0 || size > 0.5 * longest(area)) return { bounds: area, isPart: false };
   const grown = (from, to) => {
     const half = Math.max(to - from, 0.4 * size) / 2 + 0.1 * size;
@@ -25,6 +29,14 @@ function shown(flight) {
   };
   const [[left, right], [bottom, top]] = [grown(part.left, part.right), grown(part.bottom, part.top)];
   return { bounds: { left, right, bottom, top }, isPart: true };
+}
+
+/** Adds a scene to a mission that goes on. What its map shows stays as it is while the track is in it. */
+function addScene(flight, scene) {
+  flight.scenes.push(scene);
+  const { left, right, bottom, top } = flight.shown?.bounds ?? around([]);
+  const isIn = ([x, z]) => x >= left && x <= right && z >= bottom && z <= top;
+  if (!placesOf(scene).every(isIn)) flight.shown = undefined;
 }
 
 /** Where places lie on a drawing this wide. On a phone ticks are within the map, which fills the width. */

@@ -1,7 +1,8 @@
 //! A report in one file: a page that shows missions step by step, side by side if there are several.
 //!
 //! The file contains everything, and the page may load nothing: what it shows without a script, and the data from which a
-//! script draws the scenes.
+//! script draws the scenes. The same page shows a mission that is still flown: then it asks the program that serves it for
+//! the scenes, and for nothing else.
 
 pub(crate) mod scene;
 mod words;
@@ -11,9 +12,12 @@ use std::fmt::Write as _;
 use nalgebra::Point2;
 use serde::Serialize;
 
+use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
+use crate::mission::results::Start;
 use crate::report::page::scene::{Flight, Moved, Scene};
-use crate::report::page::words::{minus, signed, small};
+use crate::report::page::words::{Told, minus, signed, small};
+use crate::report::picture::Drawn;
 use crate::report::text;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -24,12 +28,17 @@ const SCRIPT: [&str; 4] = [
     include_str!("charts.js"),
     include_str!("page.js"),
 ];
+const LIVE_SCRIPT: &str = include_str!("live.js");
+const LIVE_STATUS: &str = "<p id=\"live\" class=\"live\" role=\"status\"></p>\n";
 
 /// A page of missions.
 #[derive(Debug, Serialize)]
 pub struct Page {
     title: String,
     chapters: Vec<Chapter>,
+    /// Of a mission that is still flown, what the ids of its events begin with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<String>,
 }
 
 /// Missions that are shown side by side, in step.
@@ -44,7 +53,12 @@ pub struct Chapter {
 impl Page {
     /// A page under a title.
     pub fn new(title: impl Into<String>, chapters: Vec<Chapter>) -> Self {
-        Self { title: title.into(), chapters }
+        Self { title: title.into(), chapters, live: None }
+    }
+
+    /// A page of a mission that is still flown. Its server sends the scenes in events whose ids begin with a token.
+    pub(crate) fn live(title: &str, chapter: Chapter, token: &str) -> Self {
+        Self { live: Some(token.to_owned()), ..Self::new(title, vec![chapter]) }
     }
 
     /// The page as an HTML document.
@@ -55,8 +69,13 @@ impl Page {
             "chapters" => {
                 (0..).zip(&self.chapters).map(|(number, it)| chapter(number, it)).collect()
             }
-            "data" => data(self),
-            "script" => SCRIPT.join("\n"),
+            "data" => json(self),
+            "script" => {
+                let live = self.live.as_ref().map(|_| LIVE_SCRIPT);
+                SCRIPT.into_iter().chain(live).collect::<Vec<_>>().join("\n")
+            }
+            "connect" => self.live.as_ref().map_or("", |_| "; connect-src 'self'").to_owned(),
+            "live" => self.live.as_ref().map_or("", |_| LIVE_STATUS).to_owned(),
             other => unreachable!("the template has no {other}"),
         })
     }
@@ -69,9 +88,21 @@ impl Chapter {
         flights: impl IntoIterator<Item = (&'a str, &'a Recording)>,
     ) -> Self {
         let flights: Vec<_> = flights.into_iter().collect();
-        let about = flights.first().map_or(Vec::new(), |(_, first)| words::about(first));
+        let about =
+            flights.first().map_or(Vec::new(), |(_, first)| words::about(&first.results.start));
         let shown = flights.into_iter().map(|(name, recording)| Flight::of(name, recording));
         Self { title: title.into(), about, flights: shown.collect() }
+    }
+
+    /// A mission that begins, with the scene of its start.
+    pub(crate) fn begun(title: impl Into<String>, mission: &Mission, scene: Scene) -> Self {
+        let mut flight = Flight::begun(mission.algorithm.title(), mission);
+        flight.scenes.push(scene);
+        Self {
+            title: title.into(),
+            about: words::about(&Start::of(mission)),
+            flights: vec![flight],
+        }
     }
 
     /// The same with a note on how to read it.
@@ -110,9 +141,34 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// The scenes as JSON that cannot end the script element. A `<` occurs only within strings, where it may be escaped.
-fn data(page: &Page) -> String {
-    let json = serde_json::to_string(page).expect("a plain structure");
+/// What comes last on a live page: why the mission ended, and what is known only then.
+#[derive(Debug, Serialize)]
+pub(crate) struct End {
+    ended: Vec<Told>,
+    boundary: Option<Vec<Drawn>>,
+}
+
+impl End {
+    pub(crate) fn of(recording: &Recording) -> Self {
+        let Recording { mission, results, steps, .. } = recording;
+        let ended = words::ended(results).collect();
+        Self { ended, boundary: Some(scene::boundary(mission, Some(steps.len()))) }
+    }
+
+    /// Of a mission that came to nothing.
+    pub(crate) fn broken_off(why: &str) -> Self {
+        Self { ended: vec![Told::new("Ended", format!("{why}."))], boundary: None }
+    }
+
+    /// As JSON, in one line.
+    pub(crate) fn json(&self) -> String {
+        json(self)
+    }
+}
+
+/// JSON in one line that cannot end the script element. A `<` occurs only within strings, where it may be escaped.
+fn json(it: &impl Serialize) -> String {
+    let json = serde_json::to_string(it).expect("a plain structure");
     json.replace('<', "\\u003c")
 }
 
@@ -136,10 +192,11 @@ fn chapter(number: usize, Chapter { title, about, flights }: &Chapter) -> String
     html + "</section>\n</section>\n"
 }
 
-/// The picture of a mission's end.
+/// The picture of a mission's end, if it has ended.
 fn still(flight: &Flight) -> String {
+    let Some(picture) = &flight.picture else { return String::new() };
     // Within HTML it needs no name space, and a page that names no address can be seen to load none.
-    let svg = flight.picture.svg().replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    let svg = picture.svg().replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
     format!("<h3>{}</h3>\n<div class=\"still\">{svg}</div>\n", escaped(&flight.planner))
 }
 
@@ -168,14 +225,23 @@ fn steps(flight: &Flight) -> String {
         let _ = write!(html, "<th scope=\"col\">{head}</th>");
     }
     html += "</tr></thead>\n<tbody>\n";
-    for (number, scene) in flight.scenes.iter().enumerate() {
-        let _ = write!(html, "<tr><th scope=\"row\">{number}</th>");
-        for cell in cells(scene, flight.follows) {
-            let _ = write!(html, "<td>{}</td>", escaped(&cell));
-        }
-        html += "</tr>\n";
-    }
+    html.extend(
+        flight.scenes.iter().enumerate().map(|(k, scene)| scene.row(k, flight.follows) + "\n"),
+    );
     html + "</tbody>\n</table>\n</div>\n"
+}
+
+impl Scene {
+    /// As JSON, in one line: as the page has it.
+    pub(crate) fn json(&self) -> String {
+        json(self)
+    }
+
+    /// Its row of the table of steps, in one line.
+    pub(crate) fn row(&self, number: usize, follows: bool) -> String {
+        let cells = cells(self, follows).map(|cell| format!("<td>{}</td>", escaped(&cell)));
+        format!("<tr><th scope=\"row\">{number}</th>{}</tr>", cells.concat())
+    }
 }
 
 /// What a step has beside its number. Of a front it is where the front is known best, and not a line.
@@ -226,7 +292,7 @@ mod tests {
     #[test]
     fn no_text_ends_its_script_or_its_element() {
         let page = Page::new("</script><!--<script>&'\"", Vec::new());
-        let data = data(&page);
+        let data = json(&page);
         assert!(!data.contains('<'), "{data}");
         let read: serde_json::Value = serde_json::from_str(&data).unwrap();
         assert_eq!(read["title"], page.title);

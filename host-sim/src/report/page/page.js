@@ -12,9 +12,8 @@ const controls = Object.fromEntries(
 const chapters = PAGE.chapters.map((chapter, number) => stage(chapter, document.getElementById(`chapter-${number}`)));
 const state = { chapter: 0, step: 0, timer: null };
 
-/** Builds what a chapter shows; returns how to show a step, and how many there are. */
+/** Builds what a chapter shows; returns how to show a step, how many there are, and how to renew it with more of them. */
 function stage({ flights }, section) {
-  const steps = Math.max(...flights.map((flight) => flight.scenes.length)) - 1;
   const place = section.querySelector('.stage');
   place.hidden = false;
   place.classList.toggle('solo', flights.length === 1);
@@ -22,8 +21,14 @@ function stage({ flights }, section) {
   const row = add(place, 'div', { class: 'flights' });
   const follows = flights.every((flight) => flight.follows);
   const charted = CHARTS.filter((chart) => (chart.of ?? follows) === follows);
-  const ranges = charted.map((chart) => [chart, domain(chart, flights)]);
-  const views = flights.map((flight, k) => panel(row, flight, ranges, steps, `${section.id}-flight-${k}`));
+  const extent = { steps: 0, ranges: [] };
+  const views = flights.map((flight, k) => panel(row, flight, charted, extent, `${section.id}-flight-${k}`));
+  const renew = () => {
+    extent.steps = Math.max(...flights.map((flight) => flight.scenes.length)) - 1;
+    extent.ranges = charted.map((chart) => domain(chart, flights));
+    for (const view of views) view.renew();
+  };
+  renew();
   const rows = [...section.querySelectorAll('table.told')];
   let shown = null;
   const show = (step) => {
@@ -35,38 +40,40 @@ function stage({ flights }, section) {
   const fit = () => shown !== null && views.forEach((view) => view.fit());
   new ResizeObserver(fit).observe(row);
   PAPER.addEventListener('change', fit);
-  return { section, steps, show, quiet: (isQuiet) => views.forEach((view) => view.quiet(isQuiet)) };
+  const quiet = (isQuiet) => views.forEach((view) => view.quiet(isQuiet));
+  return { section, flights, show, fit, renew, quiet, get steps() { return extent.steps; } };
 }
 
 /** A mission's map, words and charts. */
-function panel(row, flight, ranges, steps, id) {
+function panel(row, flight, charted, extent, id) {
   const article = add(row, 'article', { class: 'flight', 'aria-labelledby': id });
   add(article, 'h3', { id }, flight.planner);
   const figure = add(article, 'figure', { class: flight.follows ? 'map follows' : 'map' });
   const map = add(figure, 'svg', { role: 'img' });
-  legend(figure, flight);
+  const caption = add(figure, 'figcaption');
   const side = add(article, 'div', { class: 'side' });
   const told = add(side, 'div', { class: 'words', role: 'status', 'aria-live': 'polite' });
   const grid = add(side, 'div', { class: 'charts' });
   add(grid, 'p', {}, 'By step. Bars: what is left; across: the truth; dots: the estimate. Click to go there.');
-  const charts = ranges.map(([chart, range]) => {
+  const charts = charted.map((chart) => {
     const frame = add(grid, 'figure');
-    const caption = add(frame, 'figcaption');
-    add(caption, 'span', {}, chart.title(flight));
-    const value = add(caption, 'output', { 'aria-live': 'off' });
+    const title = add(frame, 'figcaption');
+    add(title, 'span', {}, chart.title(flight));
+    const value = add(title, 'output', { 'aria-live': 'off' });
     const svg = add(frame, 'svg', { 'aria-hidden': 'true' });
-    svg.addEventListener('click', (event) => go(stepAt(svg, event.clientX, steps)));
-    return { chart, range, svg, value };
+    svg.addEventListener('click', (event) => go(stepAt(svg, event.clientX, extent.steps)));
+    return { chart, svg, value };
   });
   let now = 0;
   const draw = (from) => {
     drawMap(map, flight, now, widthOf(figure), from);
-    for (const { chart, range, svg } of charts) {
-      drawChart(svg, chart, flight, now, range, steps, widthOf(svg.parentElement));
+    for (const [k, { chart, svg }] of charts.entries()) {
+      drawChart(svg, chart, flight, now, extent.ranges[k], extent.steps, widthOf(svg.parentElement));
     }
   };
   return {
     fit: () => draw(null),
+    renew: () => legend(caption, flight),
     quiet: (isQuiet) => told.setAttribute('aria-live', isQuiet ? 'off' : 'polite'),
     show: (step, from) => {
       now = Math.min(step, flight.scenes.length - 1);
@@ -90,7 +97,8 @@ function tell(place, flight, now, step) {
   const over = now < step ? ', over' : '';
   add(place, 'h4', {}, now === 0 ? 'Start' : `Step ${now}${over}`);
   const list = add(place, 'dl');
-  for (const { of, text } of flight.scenes[now].told) {
+  const isLast = now === flight.scenes.length - 1;
+  for (const { of, text } of [...flight.scenes[now].told, ...(isLast ? flight.ended : [])]) {
     const pair = add(list, 'div');
     add(pair, 'dt', {}, of);
     add(pair, 'dd', {}, text);
@@ -98,8 +106,8 @@ function tell(place, flight, now, step) {
 }
 
 /** What each mark on a map means, of those that are there. */
-function legend(figure, flight) {
-  const caption = add(figure, 'figcaption');
+function legend(caption, flight) {
+  caption.replaceChildren();
   const list = add(caption, 'ul', { class: 'legend' });
   const item = (words, draw) => {
     const entry = add(list, 'li');
@@ -192,20 +200,26 @@ function go(step) {
   const { steps, show } = chapters[state.chapter];
   state.step = Math.max(0, Math.min(steps, step));
   show(state.step);
+  showCount();
+  if (state.step === steps) pause();
+}
+
+/** Which step is shown, of how many. */
+function showCount() {
+  const { steps } = chapters[state.chapter];
+  controls.slider.max = steps;
   controls.slider.value = state.step;
   controls.slider.setAttribute('aria-valuetext', `Step ${state.step} of ${steps}`);
   controls.count.textContent = `${state.step} of ${steps}`;
   for (const [button, isEnd] of [['first', state.step === 0], ['back', state.step === 0], ['next', state.step === steps], ['last', state.step === steps]]) {
     controls[button].setAttribute('aria-disabled', String(isEnd));
   }
-  if (state.step === steps) pause();
 }
 
 function open(number) {
   pause();
   state.chapter = number;
   for (const [k, { section }] of chapters.entries()) section.hidden = k !== number;
-  controls.slider.max = chapters[number].steps;
   go(chapters[number].steps); // where it led; `Play` begins at the start
 }
 

@@ -2,18 +2,20 @@
 
 use std::iter;
 
-use nalgebra::Point2;
-use planner_core::{Line, Sample, Site, Step};
+use nalgebra::{Point2, Vector2};
+use planner_core::dynamics::Dynamics as _;
+use planner_core::{AnyVehicle, Line, Sample, Site, Step};
 use serde::Serialize;
 
 use crate::mission::definition::Mission;
+use crate::mission::front::VertexRecord;
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
-use crate::mission::results::{LineError, LineRecord, PoseRecord, StepResult};
+use crate::mission::results::{LineError, LineRecord, PoseRecord, Start, StepResult};
 use crate::report::examples::bits;
 use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
-use crate::report::picture::{Drawn, Picture, Stop};
+use crate::report::picture::{self, Drawn, Picture, Stop};
 use crate::report::pieces::ends;
 use crate::report::text;
 use crate::world::World;
@@ -50,9 +52,11 @@ pub(crate) struct Flight {
     pub(crate) boundary: Vec<Drawn>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
+    /// Why it ended, and what it came to.
+    pub(crate) ended: Vec<Told>,
     /// The picture of the end, for where no script runs.
     #[serde(skip)]
-    pub(crate) picture: Picture,
+    pub(crate) picture: Option<Picture>,
 }
 
 /// A line as it is seen in the area.
@@ -141,7 +145,7 @@ pub(crate) struct Moved {
 }
 
 /// Rounds places to what can be seen.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Rounding {
     /// Metres.
     unit: f64,
@@ -203,54 +207,87 @@ impl Flight {
     /// A mission as it was flown by a planner of this name.
     pub(crate) fn of(planner: &str, recording: &Recording) -> Self {
         let Recording { mission, results, steps, .. } = recording;
+        let taken = iter::once(None).chain(steps.iter().zip(&results.steps).map(Some));
+        let mut maker = Scenes::new(mission);
+        let scenes = recording.known().zip(taken);
+        let scenes = scenes.map(|(belief, taken)| maker.scene(mission, taken, belief)).collect();
+        let picture = Picture::of(planner, recording);
+        Self {
+            scenes,
+            ended: words::ended(results).collect(),
+            boundary: boundary(mission, Some(steps.len())),
+            picture: Some(picture),
+            ..Self::begun(planner, mission)
+        }
+    }
+
+    /// A mission before its first scene.
+    pub(crate) fn begun(planner: &str, mission: &Mission) -> Self {
         let area = mission.config.area;
         let border = Polygon::from(area);
         let rounding = Rounding::of(&border);
-        let picture = Picture::of(planner, recording);
-        let [(estimate, _), ..] = text::estimates(results);
         let given = |s: &Sample| (rounding.place(s.site.into()), s.label.sign());
-        let taken = steps.iter().zip(&results.steps).zip(&picture.stops).map(Some);
-        let mut scenes = Vec::new();
-        for (belief, taken) in recording.known().zip(iter::once(None).chain(taken)) {
-            let scene = Scene::of((recording, rounding, estimate), belief, taken, scenes.last());
-            scenes.push(scene);
-        }
-        if let Some(last) = scenes.last_mut() {
-            last.told.extend(words::ended(results));
-        }
         let polygon = |it: Polygon| Polygon(rounding.way(it.0));
+        let shores = mission.lake.iter().flat_map(|it| it.polygons.iter().flatten().cloned());
         Self {
             planner: planner.to_owned(),
-            estimate,
+            estimate: text::recommended(mission.is_noisy()),
             labels_err: mission.is_noisy(),
             follows: !mission.algorithm.seeks_line(),
             keep_outs: area.hulls().map(|hull| polygon(hull.into())).collect(),
-            shores: picture.shores.iter().cloned().map(|it| polygon(Polygon(it))).collect(),
+            shores: shores.map(|it| polygon(Polygon(it))).collect(),
             given: mission.oracle().iter().map(given).collect(),
-            truth: results.start.truth,
-            boundary: picture.truth.iter().cloned().map(|it| rounding.drawn(it)).collect(),
+            truth: mission.world.line().map(|line| (*line).into()),
+            boundary: boundary(mission, None),
             area: polygon(border),
-            scenes,
-            picture,
+            scenes: Vec::new(),
+            ended: Vec::new(),
+            picture: None,
         }
     }
 }
 
-/// A step that was taken, what came of it, and its end.
-type Taken<'a> = ((&'a Step, &'a StepResult), &'a Stop);
+/// The true boundary as a page draws it: where it moves, at the start, and at the end after so many motions.
+pub(crate) fn boundary(mission: &Mission, motions: Option<usize>) -> Vec<Drawn> {
+    let rounding = Rounding::of(&mission.config.area.into());
+    picture::truth(mission, motions).into_iter().map(|it| rounding.drawn(it)).collect()
+}
 
-impl Scene {
-    /// The scene after a step and the scene before it, or at the start. `estimate` is what the recommended one is called.
-    fn of(
-        (recording, rounding, estimate): (&Recording, Rounding, &str),
+/// Makes the scenes of a mission, one after the other, from what has happened so far. So a report and a page that shows
+/// the mission while it is flown have the same.
+#[derive(Debug)]
+pub(crate) struct Scenes {
+    start: Start,
+    rounding: Rounding,
+    /// Where the robot was, by what it reports.
+    from: Point2<f64>,
+    /// Where the front was known best.
+    vertex: Option<Point2<f64>>,
+    /// Bits learnt so far, and expected so far.
+    bits: f64,
+    expected_bits: f64,
+}
+
+impl Scenes {
+    /// Those of a mission that begins.
+    pub(crate) fn new(mission: &Mission) -> Self {
+        let start = Start::of(mission);
+        let from = Point2::new(start.pose.x, start.pose.z);
+        let rounding = Rounding::of(&mission.config.area.into());
+        Self { start, rounding, from, vertex: None, bits: 0.0, expected_bits: 0.0 }
+    }
+
+    /// The next scene: of the start, or after a step that was taken and what came of it. `belief` is what is known then.
+    pub(crate) fn scene(
+        &mut self,
+        mission: &Mission,
+        taken: Option<(&Step, &StepResult)>,
         belief: &dyn ReadOut,
-        taken: Option<Taken>,
-        before: Option<&Self>,
-    ) -> Self {
-        let mission = &recording.mission;
+    ) -> Scene {
+        let Self { ref start, rounding, from, .. } = *self;
         let area = mission.config.area;
         let knowledge = belief.knowledge();
-        let step = taken.map(|((_, result), _)| result);
+        let step = taken.map(|(_, result)| result);
         let world = mission.world.after(step.map_or(0, |it| it.step));
         // A front has no straight estimate.
         let centre = || beside_truth(mission, &world, belief.estimates()).centre;
@@ -258,33 +295,51 @@ impl Scene {
         // Of a front nothing is known before it is found.
         let of_front = || step.map_or(0.0, |step| step.bits);
         let bits = if belief.front().is_some() { of_front() } else { bits(belief) };
-        let read = step.map(|step| (step, bits - before.map_or(0.0, |it| it.bits)));
-        let expected = step.and_then(|step| step.expected).map_or(0.0, |it| it.bits);
-        let told = words::stage(recording, read, (&knowledge, bits), (estimate, centre.as_ref()));
-        let start = recording.results.start.pose;
-        let PoseRecord { x, z, heading } = step.map_or(start, |step| step.pose);
-        Self {
-            motion: taken.map(|taken| Moved::of(mission, rounding, taken)),
-            at: rounding.place(Point2::new(x, z)),
+        let read = step.map(|step| (step, bits - self.bits));
+        let told = words::stage((mission, start), read, (&knowledge, bits), centre.as_ref());
+        let PoseRecord { x, z, heading } = step.map_or(start.pose, |step| step.pose);
+        let motion = taken.map(|(step, result)| {
+            Moved::of(mission, rounding, (step, result), &Stop::of(mission, from, result))
+        });
+        self.from = Point2::new(x, z);
+        let vertex = step.and_then(|step| step.front);
+        let is_beside = vertex.is_some_and(|it| self.is_beside(mission, &it));
+        self.vertex = vertex.map(|it| it.at());
+        self.bits = bits;
+        self.expected_bits += step.and_then(|step| step.expected).map_or(0.0, |it| it.bits);
+        Scene {
+            motion,
+            at: rounding.place(self.from),
             heading,
             ground: rounding.ground(Ground::of(belief, area)),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
-            front: step
-                .filter(|step| is_beside(&recording.results.steps, step.step))
-                .and_then(|step| rounding.front(step, &world)),
+            front: step.filter(|_| is_beside).and_then(|step| rounding.front(step, &world)),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
             bits,
-            expected_bits: before.map_or(0.0, |it| it.expected_bits) + expected,
+            expected_bits: self.expected_bits,
             cost: step.map_or(0.0, |step| step.control_cost),
             metres: step.map_or(0.0, |step| step.metres),
             told,
         }
     }
+
+    /// Whether the place where the front is known best now is beside the robot. While it drives back to where it
+    /// began, that place lies far along the front and stays what it is.
+    fn is_beside(&self, mission: &Mission, vertex: &VertexRecord) -> bool {
+        let along = Vector2::new(libm::cos(vertex.heading), libm::sin(vertex.heading));
+        let ahead = (self.from - vertex.at()).dot(&along);
+        self.vertex != Some(vertex.at()) && ahead.abs() <= 2.0 * longest(&mission.vehicle)
+    }
 }
 
 impl Moved {
-    fn of(mission: &Mission, rounding: Rounding, ((step, result), stop): Taken) -> Self {
+    fn of(
+        mission: &Mission,
+        rounding: Rounding,
+        (step, result): (&Step, &StepResult),
+        stop: &Stop,
+    ) -> Self {
         let place = |at: Point2<f64>| rounding.place(at);
         let [target, end] = [step.motion.target.site, step.pose.site];
         Self {
@@ -321,12 +376,8 @@ fn seen(record: &LineRecord, border: &Polygon, rounding: Rounding) -> SeenLine {
     }
 }
 
-/// Whether the front that is known after a step is beside the robot. While this drives back to where it began, that place
-/// stays what it knows.
-fn is_beside(steps: &[StepResult], step: usize) -> bool {
-    let at = |step: usize| {
-        let step = steps.get(step.checked_sub(1)?)?;
-        step.front.map(|it| it.at())
-    };
-    at(step) != at(step - 1) && at(step) != at(step + 1)
+/// The longest motion of a vehicle, metres.
+fn longest(vehicle: &AnyVehicle) -> f64 {
+    let grid = vehicle.grid();
+    f64::from(grid.reach_mm(grid.speeds().saturating_sub(1))) * 1e-3
 }

@@ -9,8 +9,7 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::definition::Mission;
 use crate::mission::front::VertexRecord;
 use crate::mission::read_out::{Expectation, Knowledge};
-use crate::mission::recording::Recording;
-use crate::mission::results::{AUDIT, LineRecord, Results, StepResult};
+use crate::mission::results::{AUDIT, LineRecord, Results, Start, StepResult};
 use crate::report::text;
 
 /// A sentence under its heading.
@@ -23,20 +22,19 @@ pub(crate) struct Told {
 }
 
 impl Told {
-    fn new(of: &'static str, text: impl Into<String>) -> Self {
+    pub(crate) fn new(of: &'static str, text: impl Into<String>) -> Self {
         Self { of, text: text.into() }
     }
 }
 
 /// The sentences for a step, with the increase of the information in bits, or for the start without one. They get what
-/// is known with the bits learnt, and the recommended estimate with its name.
+/// is known with the bits learnt, and the recommended estimate.
 pub(crate) fn stage(
-    recording: &Recording,
+    (mission, start): (&Mission, &Start),
     step: Option<(&StepResult, f64)>,
     (knowledge, bits): (&Knowledge, f64),
-    (name, estimate): (&str, Option<&LineRecord>),
+    estimate: Option<&LineRecord>,
 ) -> Vec<Told> {
-    let Recording { mission, results, .. } = recording;
     let mut told = if let Some((step, rise)) = step {
         vec![
             Told::new("Planned", planned(mission, step)),
@@ -44,15 +42,18 @@ pub(crate) fn stage(
             Told::new("Read", read(step, rise)),
         ]
     } else {
-        vec![Told::new("Given", given(results))]
+        vec![Told::new("Given", given(start))]
     };
-    if results.end.front.is_some() {
+    let evidence = step.and_then(|(step, _)| step.evidence);
+    told.extend(evidence.map(|it| Told::new(text::level(it), format!("{}.", text::evidence(it)))));
+    if !mission.algorithm.seeks_line() {
         let found = step.and_then(|(step, _)| step.front);
         told.push(Told::new("Front", found.map_or("not found.".into(), |it| on_front(&it))));
         return told;
     }
     told.push(Told::new("Known", known(knowledge, bits)));
-    told.push(Told::new("Estimate", estimated(name, estimate, results)));
+    let name = text::recommended(mission.is_noisy());
+    told.push(Told::new("Estimate", estimated(name, estimate, start)));
     told
 }
 
@@ -78,15 +79,15 @@ pub(crate) fn ended(results: &Results) -> impl Iterator<Item = Told> {
 }
 
 /// What a mission is, before it begins, but the places: the map shows them.
-pub(crate) fn about(recording: &Recording) -> Vec<String> {
+pub(crate) fn about(start: &Start) -> Vec<String> {
     const PLACES: [&str; 2] = ["It starts at", "The oracle's points"];
-    let beginning = text::beginning(&recording.results.start);
+    let beginning = text::beginning(start);
     let is_told = |it: &&str| !it.is_empty() && !PLACES.iter().any(|place| it.starts_with(place));
     beginning.lines().filter(is_told).map(minus).collect()
 }
 
-fn given(results: &Results) -> String {
-    let given = text::given(&results.start);
+fn given(start: &Start) -> String {
+    let given = text::given(start);
     let lines = given.lines().filter(|it| !it.is_empty()).map(|it| format!("{it}."));
     minus(&lines.collect::<Vec<_>>().join(" "))
 }
@@ -181,9 +182,9 @@ fn known(knowledge: &Knowledge, bits: f64) -> String {
     format!("Slopes{of} {arcs} deg, intercepts {range}{metres}. {bits} bits told so far.{doubt}")
 }
 
-fn estimated(name: &str, estimate: Option<&LineRecord>, results: &Results) -> String {
+fn estimated(name: &str, estimate: Option<&LineRecord>, start: &Start) -> String {
     let Some(estimate) = estimate else { return format!("{}: none.", sentence(name)) };
-    let truth = if results.start.boundary.is_some() { "the best line" } else { "the truth" };
+    let truth = if start.boundary.is_some() { "the best line" } else { "the truth" };
     let off = estimate.error.map_or(String::new(), |error| {
         let share = 100.0 * error.misclassified;
         format!(
