@@ -102,7 +102,7 @@ const late = await view(1280, 800);
 await sees(late, 9, 9, 'who comes late');
 await fly('all');
 for (const page of [wide, narrow, late]) {
-  await says(page, 'Ended: ', 'the end');
+  await says(page, 'Ended. ', 'the end');
   check(await page.evaluate(() => document.querySelector('.words').textContent.includes('Ended')), 'the end: the words do not say why');
 }
 // In the end it is the report: the same data, the same map, the same table.
@@ -118,7 +118,7 @@ const [shown, expected] = [await parts(wide), await parts(still)];
 for (const part of Object.keys(expected)) check(shown[part] === expected[part], `the end: the ${part} are not the report's`);
 await checkLooks(wide, `${name}, wide, the end`);
 await wide.screenshot({ path: join(folder, `live-${name}-1280-end.png`) });
-await narrow.screenshot({ path: join(folder, `live-${name}-390-end.png`), fullPage: true });
+await narrow.screenshot({ path: join(folder, `live-${name}-390-end.png`) });
 await browser.close();
 server.close();
 conclude(name);

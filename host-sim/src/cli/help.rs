@@ -25,10 +25,14 @@ Examples:
   host-sim run mission.toml
   host-sim run mission.toml --algorithm lookahead --steps 30 --figure m.svg
   host-sim run mission.toml --report m.html    a page to step through, for a browser
+  host-sim run mission.toml --live             the same page while the mission is flown, a step each second
   host-sim run mission.toml --compare cfc,lookahead --report m.html
   host-sim run mission.toml --trace m.jsonl --mcap m.mcap
   host-sim run mission.toml --format flat > steps.jsonl
       then, in Python: pandas.read_json('steps.jsonl', lines=True)
+
+With --live the program prints a link, and does not wait for anyone to open it. Who comes late sees all of the mission. When
+it has ended and those who watch have got its end, the program ends; their pages stay as they are.
 
 The scenario file is described in docs/reference/scenario.md; `host-sim init` writes one to begin with.";
 
@@ -46,7 +50,8 @@ Examples:
   host-sim hil mission.toml --emulator         the firmware under QEMU; it is built where needed
   host-sim hil mission.toml --port /dev/ttyUSB0
   host-sim hil mission.toml --emulator --fault drop=0.1,delay=20ms --timing t.csv
-  host-sim hil mission.toml --port /dev/ttyUSB0 --trace t.jsonl --resume    goes on where it was stopped";
+  host-sim hil mission.toml --port /dev/ttyUSB0 --trace t.jsonl --resume    goes on where it was stopped
+  host-sim hil mission.toml --port /dev/ttyUSB0 --live    a page that shows the mission while it is flown";
 
 #[cfg(feature = "mavlink")]
 pub(crate) const FLY: &str = "\
@@ -54,6 +59,7 @@ Examples:
   host-sim fly mission.toml --dry-run --label WET       what an ideal vehicle would be sent
   host-sim fly mission.toml --mavlink udp:127.0.0.1:14550 --label WET
   host-sim fly mission.toml --mavlink serial:/dev/ttyUSB0:57600 --label channel:7 --trace t.jsonl
+  host-sim fly mission.toml --mavlink udp:127.0.0.1:14550 --label WET --live    a page that shows it
 
 The scenario's x points east and its z north of the origin of the vehicle's local position. It needs a tolerance, how far
 that position may be off, and no truth. A dry run takes its labels from the truth, or else from a line that the oracle's

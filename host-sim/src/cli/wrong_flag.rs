@@ -1,10 +1,13 @@
 //! What is wrong with the arguments, in one line, as of a key: what was found, and what was expected.
 
+use std::env;
 use std::error::Error as _;
 
 use anyhow::{Error, anyhow};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{Arg, CommandFactory as _};
 
+use crate::cli::arguments::Cli;
 use crate::mission::wording::expected;
 use crate::output::plain;
 
@@ -60,7 +63,9 @@ fn message(error: &clap::Error) -> Error {
             }
         }
         ErrorKind::UnknownArgument => {
-            anyhow!("{argument}: found an argument too many, expected {usage}")
+            let glued = before(&argument).map(|flag| format!("{flag}={argument}, or "));
+            let glued = glued.unwrap_or_default();
+            anyhow!("{argument}: found an argument too many, expected {glued}{usage}")
         }
         ErrorKind::InvalidSubcommand => {
             let name = first(ContextKind::InvalidSubcommand);
@@ -87,6 +92,16 @@ fn message(error: &clap::Error) -> Error {
             anyhow!("{said}, expected what `{command} --help` shows")
         }
     }
+}
+
+/// The flag before an argument of this program, if it takes a value behind an equals sign alone.
+fn before(argument: &str) -> Option<String> {
+    let all: Vec<_> = env::args().collect();
+    let before = all.windows(2).find(|pair| pair[1] == argument)?[0].clone();
+    let long = before.strip_prefix("--")?;
+    let takes_it = |it: &Arg| it.get_long() == Some(long) && it.is_require_equals_set();
+    let cli = Cli::command();
+    cli.get_subcommands().any(|it| it.get_arguments().any(takes_it)).then_some(before)
 }
 
 /// What a flag expects, by the name of its value.

@@ -27,6 +27,7 @@ use spoiled::{
 mod endings;
 mod fronts;
 mod habits;
+mod live;
 mod on_the_way;
 mod pymavlink;
 mod spoiled;

@@ -110,7 +110,7 @@ impl Live {
 
 impl Drop for Live {
     fn drop(&mut self) {
-        self.break_off("the program ended");
+        self.break_off("The program ended");
         self.server.feed().settle();
     }
 }

@@ -21,7 +21,7 @@ function tellState() {
   const texts = {
     live: isFollowing() ? 'Live' : 'Live: go to the last step to follow it',
     lost: 'Not connected, trying again',
-    ended: `Ended: ${ended}`,
+    ended: `Ended. ${ended}`,
   };
   const words = `${texts[said.state]}\n${said.notice}`;
   if (badge.dataset.words === words) return;

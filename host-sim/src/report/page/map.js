@@ -15,11 +15,15 @@ function placesOf({ at, motion, front }) {
   return [at, ...(motion?.way ?? []), ...(front?.ends ?? [])];
 }
 
-/** What a map shows: the area, or of a front the track alone if that is small. A track that grows gets more room. */
+/**
+ * What a map shows: the area, or of a front the track alone if that is small. While a track grows it gets more room, and
+ * all of the area until the front is found.
+ */
 function shown(flight) {
   const longest = (it) => Math.max(it.right - it.left, it.top - it.bottom);
   const area = around(flight.area);
-  if (!flight.follows) return { bounds: area, isPart: false };
+  const isSought = flight.isGrowing && !flight.scenes.some((it) => it.front);
+  if (!flight.follows || isSought) return { bounds: area, isPart: false };
   const part = around([...flight.scenes.flatMap(placesOf), ...flight.given.map(([at]) => at)]);
   const size = flight.isGrowing ? Math.max(1.5 * longest(part), longest(area) / 8) : longest(part);
   if (size === 0 || size > 0.5 * longest(area)) return { bounds: area, isPart: false };
@@ -31,12 +35,12 @@ function shown(flight) {
   return { bounds: { left, right, bottom, top }, isPart: true };
 }
 
-/** Adds a scene to a mission that goes on. What its map shows stays as it is while the track is in it. */
+/** Adds a scene to a mission that goes on. The part that its map shows stays as it is while the track is in it. */
 function addScene(flight, scene) {
   flight.scenes.push(scene);
-  const { left, right, bottom, top } = flight.shown?.bounds ?? around([]);
+  const { bounds: { left, right, bottom, top }, isPart } = (flight.shown ??= shown(flight));
   const isIn = ([x, z]) => x >= left && x <= right && z >= bottom && z <= top;
-  if (!placesOf(scene).every(isIn)) flight.shown = undefined;
+  if (!isPart || !placesOf(scene).every(isIn)) flight.shown = undefined;
 }
 
 /** Where places lie on a drawing this wide. On a phone ticks are within the map, which fills the width. */
@@ -146,7 +150,7 @@ function drawInset(svg, flight, { bounds, at }) {
   const scale = 90 / Math.max(area.right - area.left, area.top - area.bottom);
   const [wide, high] = [scale * (area.right - area.left), scale * (area.top - area.bottom)];
   const [[x, y], [end, base]] = [at([bounds.left, bounds.top]), at([bounds.right, bounds.bottom])];
-  const spots = flight.scenes.map((it) => at(it.at));
+  const spots = [...flight.scenes.map((it) => it.at), ...flight.given.map(([place]) => place)].map(at);
   const hidden = ([left, top]) => spots.filter(([sx, sy]) => sx > left && sx < left + wide && sy > top && sy < top + high).length;
   const corners = [[end - wide - 8, y + 8], [end - wide - 8, base - high - 8], [x + 8, y + 8], [x + 8, base - high - 8]];
   const [left, top] = corners.reduce((best, it) => (hidden(it) < hidden(best) ? it : best));
