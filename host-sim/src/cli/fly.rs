@@ -109,7 +109,9 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
             Ok(Done { text, failure })
         }
         Err(why) => {
-            live.iter_mut().for_each(|live| live.break_off(&why));
+            if let Some(live) = &mut live {
+                live.break_off(&why);
+            }
             let failure = anyhow!("{name}: {why}; nothing that moves was sent");
             Ok(Done { text: String::new(), failure: Some((failure, status(&why))) })
         }

@@ -183,7 +183,9 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
     let played = player.finish_as_far_as_flown().with_context(|| args.run.name());
     let (mut played, failure) = played?;
     if let Some(live) = &mut played.live {
-        failure.iter().for_each(|why| live.say(why));
+        if let Some(why) = &failure {
+            live.say(why);
+        }
         live.end(&played.recording);
     }
     let timings = Timings::new(&played, &turnarounds);

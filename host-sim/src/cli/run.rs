@@ -128,11 +128,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<Done> {
     let pause = |live: &Option<Live>| live.is_some().then(|| thread::sleep(pace));
     pause(&live);
     let (recording, refusal) = Recording::until_refusal_watched(&mission, |recorder| {
-        live.iter_mut().for_each(|live| live.step(recorder));
+        if let Some(live) = &mut live {
+            live.step(recorder);
+        }
         pause(&live);
     });
     if let Some(live) = &mut live {
-        refusal.iter().for_each(|why| live.say(why));
+        if let Some(why) = &refusal {
+            live.say(why);
+        }
         live.end(&recording);
     }
     let text = run.tell(outputs, &recording)?;

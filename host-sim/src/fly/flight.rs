@@ -101,7 +101,9 @@ impl<L: Link> Control<L> {
             if let Some(awaited) = awaited.as_ref().filter(|_| !is_said && now >= since + PATIENCE)
             {
                 announce(format_args!("waiting for {awaited}"));
-                live.iter().for_each(|it| it.say(format_args!("waiting for {awaited}")));
+                if let Some(live) = live {
+                    live.say(format_args!("waiting for {awaited}"));
+                }
                 is_said = true;
             }
             self.round();
@@ -228,7 +230,7 @@ pub fn fly_shown<L: Link>(
     mission.start = control.start(&mission)?;
     if let Some(live) = &mut live {
         live.begin(&mission);
-        live.say("the vehicle is ready");
+        live.say("the mission began where the vehicle was");
     }
     control.pilot.reads(mission.readings);
     let mut planner = mission.planner();
@@ -247,7 +249,9 @@ pub fn fly_shown<L: Link>(
                 labels += u32::from(step.reading.is_some());
                 recorder.pass(&agent.body().passed);
                 recorder.take(&step, None, agent.planner.belief());
-                live.iter_mut().for_each(|it| it.step(&recorder));
+                if let Some(live) = &mut live {
+                    live.step(&recorder);
+                }
             }
             Ok(Event::Stopped(reason)) => {
                 ending = Ending::Stopped(reason);

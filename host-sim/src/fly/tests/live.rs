@@ -36,7 +36,10 @@ fn a_flight_is_watched() {
     // The start is shown again where the vehicle is.
     let again = scenes.len() - recording.steps.len() - 1;
     assert!(report.contains(&scenes[again..].join(",{\"motion")), "{seen}");
-    assert!(seen.contains("event: notice\ndata: the vehicle is ready\n"), "{seen}");
+    assert!(
+        seen.contains("event: notice\ndata: the mission began where the vehicle was\n"),
+        "{seen}"
+    );
     assert!(seen.contains("\ndata: it was told to stop, and says that it is at rest\n"), "{seen}");
     assert!(seen.contains("event: end\ndata: {\"ended\":[{\"of\":\"Ended\""), "{seen}");
 }

@@ -82,10 +82,10 @@ impl Feed {
 
     /// Appends an event. None of its lines contains a line break.
     pub(super) fn push(&self, kind: &str, lines: &[&str]) {
-        let data: String = lines.iter().map(|it| format!("data: {it}\n")).collect();
+        let data = lines.join("\ndata: ");
         self.change(|it| {
             let (token, number) = (&it.token, it.events.len());
-            let event = format!("id: {token}.{number}\nevent: {kind}\n{data}\n");
+            let event = format!("id: {token}.{number}\nevent: {kind}\ndata: {data}\n\n");
             it.events.push(event.into());
         });
     }

@@ -27,7 +27,7 @@ function tellState() {
   if (badge.dataset.words === words) return;
   Object.assign(badge.dataset, { words, state: said.state });
   badge.textContent = texts[said.state];
-  if (said.notice !== '') add(badge, 'span', {}, said.notice);
+  if (said.notice !== '') add(badge, 'span', {}, ` ${said.notice}`);
 }
 
 /** Takes in what has arrived, all at once: much may have, and pages that nobody sees draw nothing. */

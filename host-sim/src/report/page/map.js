@@ -145,13 +145,15 @@ function field(svg, { bounds: { left, right, bottom, top }, at }) {
 }
 
 /** All of the area in a corner that the track leaves free, and the part of it that the map shows. */
-function drawInset(svg, flight, { bounds, at }) {
+function drawInset(svg, flight, { bounds, at, isNarrow }) {
   const area = around(flight.area);
-  const scale = 90 / Math.max(area.right - area.left, area.top - area.bottom);
+  const scale = (isNarrow ? 60 : 90) / Math.max(area.right - area.left, area.top - area.bottom);
   const [wide, high] = [scale * (area.right - area.left), scale * (area.top - area.bottom)];
   const [[x, y], [end, base]] = [at([bounds.left, bounds.top]), at([bounds.right, bounds.bottom])];
-  const spots = [...flight.scenes.map((it) => it.at), ...flight.given.map(([place]) => place)].map(at);
-  const hidden = ([left, top]) => spots.filter(([sx, sy]) => sx > left && sx < left + wide && sy > top && sy < top + high).length;
+  // The name of a given point is to its right, above it.
+  const given = flight.given.map(([place]) => at(place)).flatMap(([gx, gy]) => [[gx, gy], [gx + 16, gy - 12]]);
+  const spots = [...flight.scenes.map((it) => at(it.at)), ...given];
+  const hidden = ([left, top]) => spots.filter(([sx, sy]) => sx > left - 4 && sx < left + wide + 4 && sy > top - 4 && sy < top + high + 4).length;
   const corners = [[end - wide - 8, y + 8], [end - wide - 8, base - high - 8], [x + 8, y + 8], [x + 8, base - high - 8]];
   const [left, top] = corners.reduce((best, it) => (hidden(it) < hidden(best) ? it : best));
   const spot = ([px, pz]) => [left + scale * (px - area.left), top + scale * (area.top - pz)];
