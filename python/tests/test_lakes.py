@@ -90,3 +90,42 @@ def test_no_motion_leaves_the_water() -> None:
         ends[flight.end["reason"]] += 1
     print(dict(ends))
     assert ends.total() == COUNT
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("system", [32635, 32634, 4326])
+def test_a_raster_lies_where_its_system_says(system: int, tmp_path: Path) -> None:
+    """A spill as a grid of a map, by PROJ; UTM in its zone and beside it, and degrees."""
+    lat, lon, radius = 60.2003, 24.9021, 90.0
+    spill = geopandas.GeoSeries([shapely.Point(lon, lat)], crs=4326)
+    spill = spill.to_crs(f"+proj=aeqd +lat_0={lat} +lon_0={lon} +datum=WGS84").buffer(radius, quad_segs=200)
+    spill = spill.to_crs(system)[0]
+    west, south, east, north = spill.bounds
+    west, south, east, north = 2 * west - east, 2 * south - north, 2 * east - west, 2 * north - south
+    size = 200
+    dx, dy = (east - west) / size, (north - south) / size
+    x, y = west + dx * (np.arange(size) + 0.5), north - dy * (np.arange(size) + 0.5)
+    inside = shapely.contains_xy(spill, *np.meshgrid(x, y)).astype(int)
+    rows = "\n".join(" ".join(map(str, row)) for row in inside)
+    head = f"ncols {size}\nnrows {size}\nxllcorner {west!r}\nyllcorner {south!r}\ndx {dx!r}\ndy {dy!r}\n"
+    (tmp_path / "spill.asc").write_text(head + rows)
+    crs = {} if system == 4326 else {"crs": f"EPSG:{system}"}
+    lake = next(it for it in LAKES if it.stem == "kyyvesi")
+    flight = Mission(
+        area={"geojson": str(lake)},
+        algorithm="track",
+        steps=80,
+        oracle=[],
+        start={"lat": lat, "lon": lon},
+        vehicle=VEHICLES[2],
+        truth={"raster": str(tmp_path / "spill.asc"), "threshold": 0.5, **crs},
+    ).run()
+    labels = []
+    for feature in flight.geojson()["features"]:
+        if feature["geometry"]["type"] == "Point" and "label" in feature["properties"]:
+            place = shapely.Point(feature["geometry"]["coordinates"])
+            place = geopandas.GeoSeries([place], crs=4326).to_crs(f"+proj=aeqd +lat_0={lat} +lon_0={lon} +datum=WGS84")[0]
+            off = place.distance(shapely.Point(0, 0)) - radius
+            labels.append(feature["properties"]["label"])
+            assert abs(off) < 3 or (off < 0) == (feature["properties"]["label"] == 1), feature
+    assert min(labels.count(-1), labels.count(1)) > 10

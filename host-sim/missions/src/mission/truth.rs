@@ -15,8 +15,10 @@ use crate::output::notes::mention;
 use crate::world::World;
 use crate::world::boundary::{CoastRecord, Curve};
 use crate::world::circle::Circle;
+use crate::world::crs::Crs;
 use crate::world::extent::around;
 use crate::world::files;
+use crate::world::grid::drawn_on;
 use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
@@ -56,6 +58,8 @@ pub(crate) struct TruthTable {
     raster: Option<String>,
     /// Of a raster
     threshold: Option<f64>,
+    /// Of a raster in an area from a map: the system of its metres, if it is not that of the area
+    crs: Option<String>,
     /// Polygons of a file beside the scenario, +1 inside, in the coordinates of the area
     geojson: Option<String>,
     /// The boundary moves with every motion: a line by `[metres along its normal, degrees]`, any other by `[x, z]`, metres
@@ -113,7 +117,18 @@ impl TruthTable {
             }
             let grid = raster_file::read(&path, rectangle);
             let mut grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
-            if let Some([x, z]) = grid.brought_to(rectangle) {
+            let is_placed = !name.to_ascii_lowercase().ends_with(".png");
+            let map = lake.filter(|_| is_placed);
+            if let (Some(crs), None) = (&self.crs, map) {
+                let expected = "an area from a map, and a grid or a GeoTIFF for its truth";
+                return wrong("truth.crs", crs, expected);
+            }
+            if let Some(lake) = map {
+                let crs = self.crs.as_deref().map(str::parse::<Crs>).transpose();
+                let crs = crs.map_err(|error| anyhow!("truth.crs: {error}"))?;
+                let drawn = drawn_on(&grid, rectangle, |at| lake.frame.on_map(at, crs.as_ref()));
+                grid = drawn.or_else(|why| wrong("truth.raster", name, why))?;
+            } else if let Some([x, z]) = grid.brought_to(rectangle) {
                 mention(format_args!(
                     "truth.raster: {name} lies far off, so its corner ({x}, {z}) is put at that of the area"
                 ));
@@ -158,6 +173,9 @@ impl TruthTable {
             kinds.iter().filter(|(_, is_found)| *is_found).map(|(name, _)| *name).collect();
         if found.len() > 1 {
             return wrong("truth", found.join(" and "), "one boundary");
+        }
+        if let (Some(crs), false) = (&self.crs, has_raster) {
+            return wrong("truth.crs", crs, "none: it is of a raster");
         }
         match (has_raster, self.raster.is_some(), self.threshold.is_some()) {
             (true, true, false) => wrong("truth", "raster without threshold", "both"),

@@ -56,6 +56,10 @@ impl Systems {
     fn degrees(&self, _: [f64; 2]) -> Option<[f64; 2]> {
         match *self {}
     }
+
+    fn metres(&self, _: [f64; 2]) -> Option<[f64; 2]> {
+        match *self {}
+    }
 }
 
 #[cfg(not(target_family = "wasm"))]
@@ -88,6 +92,12 @@ impl Systems {
         transform(&self.own, &self.degrees, &mut at).ok()?;
         Some([at.1, at.0].map(f64::to_degrees))
     }
+
+    fn metres(&self, [lat, lon]: [f64; 2]) -> Option<[f64; 2]> {
+        let mut at = (lon.to_radians(), lat.to_radians());
+        transform(&self.degrees, &self.own, &mut at).ok()?;
+        Some(at.into())
+    }
 }
 
 impl fmt::Display for Crs {
@@ -117,6 +127,17 @@ impl Crs {
         let place = self.systems.degrees([x, z]).filter(|it| it.iter().all(|it| it.is_finite()));
         place.with_context(|| {
             format!("--crs {self}: found ({x}, {z}), which is no place of this system")
+        })
+    }
+
+    /// The position in the system of a latitude and a longitude, WGS84, degrees.
+    ///
+    /// # Errors
+    /// The system does not reach there.
+    pub fn metres(&self, [lat, lon]: [f64; 2]) -> Result<[f64; 2]> {
+        let at = self.systems.metres([lat, lon]).filter(|it| it.iter().all(|it| it.is_finite()));
+        at.with_context(|| {
+            format!("{self}: found latitude {lat}, longitude {lon}, which it does not reach")
         })
     }
 

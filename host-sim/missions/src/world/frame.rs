@@ -113,6 +113,23 @@ impl Frame {
         [lat, lon]
     }
 
+    /// A position in coordinates of the map, the first one to the east: longitude and latitude, or metres of this system if
+    /// there is one, of the frame's own if not.
+    ///
+    /// # Errors
+    /// The system does not reach there.
+    pub fn on_map(&self, at: Point2<f64>, crs: Option<&Crs>) -> Result<Point2<f64>> {
+        let exactly = self.exactly(at);
+        Ok(match crs {
+            None if self.is_geographic() => Point2::new(exactly[1], exactly[0]),
+            None => exactly.into(),
+            Some(crs) => {
+                let own = self.crs.as_ref();
+                crs.metres(own.map_or(Ok(exactly), |own| own.degrees(exactly))?)?.into()
+            }
+        })
+    }
+
     /// A position in the file's coordinates, if these are not the planner's.
     pub fn in_file(&self, at: Point2<f64>) -> Option<[f64; 2]> {
         self.origin.map(|_| self.recorded(at))
