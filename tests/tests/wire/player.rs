@@ -1,8 +1,14 @@
 //! The player detects a chip that takes in, estimates or asks for something different.
 
+use std::io::{Read as _, Write as _};
+use std::net::TcpStream;
+use std::thread;
+
 use host_sim::hil::player::Player;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::recording::Recording;
+use host_sim::report::live::Live;
+use host_sim::report::page::{Chapter, Page};
 use planner_core::link::frame::{Decoder, Envelope, Frame};
 use planner_core::link::message::{
     Accepted, Capacity, ClockRate, EndReason, LabelSource, MissionEnd, Move, PROTOCOL, Reply,
@@ -238,4 +244,39 @@ fn a_chip_that_changed_its_mind_is_found_out() {
     });
     let error = error.expect("an end").to_string();
     assert!(error.contains("again and again after step 1"), "{error}");
+}
+
+/// A live page shows each step that a chip has taken in, and then the end: the scenes of the report.
+#[test]
+fn a_chips_mission_is_watched() {
+    let mission = mission(0);
+    let honest = Recording::of(&mission).expect("labels are true");
+    let address = "127.0.0.1:0".parse().expect("an address");
+    let live = Live::open(&address, "a chip", &mission).expect("a free port");
+    let link = live.link();
+    let host = link.trim_start_matches("http://").trim_end_matches('/');
+    let mut viewer = TcpStream::connect(host).expect("it listens");
+    write!(viewer, "GET /scenes HTTP/1.1\r\nHost: {host}\r\n\r\n").expect("it hears");
+    let viewer = thread::spawn(move || {
+        let mut seen = String::new();
+        viewer.read_to_string(&mut seen).expect("text");
+        seen
+    });
+    let mut chip = Liar::new(player(&mission, LabelSource::Vehicle).shown(Some(live)));
+    let mut last = None;
+    for step in &honest.steps {
+        let Ok(Reply::Arrived { reading, .. }) = chip.says(asks(step.motion, last)) else {
+            panic!("it arrives");
+        };
+        last = reading;
+    }
+    chip.says(ends(last, honest.belief.estimates())).expect("it is over");
+    let mut played = chip.player.finish().expect("a mission");
+    played.live.take().expect("a live page").end(&played.recording);
+    let seen = viewer.join().expect("a stream");
+    let report = Page::new("", vec![Chapter::new("", [("", &played.recording)])]).html();
+    let scenes = seen.lines().filter_map(|it| it.strip_prefix("data: {\"motion"));
+    let scenes: Vec<_> = scenes.map(|it| format!("{{\"motion{it}")).collect();
+    assert!(report.contains(&format!("\"scenes\":[{}]", scenes.join(","))), "{seen}");
+    assert!(seen.contains("event: end\n"), "{seen}");
 }
