@@ -3,10 +3,14 @@
 //   node played.mjs PLAYGROUND.html SCENARIOS.json FOLDER
 //
 // saves the trace of each, or why it is refused, as FOLDER/NUMBER. They are flown in node; in Chromium, by the page, if the
-// name of the folder ends with `browser`. SCENARIOS are a list of { text, files: { NAME: CONTENT } }.
+// name of the folder ends with `browser`. Ends with status 1 if the module is larger than it may be. SCENARIOS are a list of { text, files: { NAME: CONTENT } }.
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { gzipSync } from 'node:zlib';
+
+/** The most bytes of the module, compressed. */
+const MOST = 600_000;
 
 const [html, list, folder] = process.argv.slice(2);
 const page = readFileSync(html, 'utf8');
@@ -45,3 +49,7 @@ const inNode = () => new Function(`return ${FLY}`)()({ scenarios, module: part('
 const { results, milliseconds } = await (folder.endsWith('browser') ? inBrowser() : inNode());
 for (const [number, result] of results.entries()) writeFileSync(join(folder, String(number)), result);
 console.log(`${((1000 * results.length) / milliseconds).toFixed(1)} missions a second`);
+const bytes = Buffer.from(part('module'), 'base64');
+const packed = gzipSync(bytes, { level: 9 }).length;
+console.log(`the module: ${bytes.length} bytes, compressed ${packed}, ${MOST} at most`);
+process.exitCode = packed > MOST ? 1 : 0;

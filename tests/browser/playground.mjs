@@ -106,6 +106,16 @@ async function byMouse() {
   const grid = `ncols 40\nnrows 32\nxllcorner 0\nyllcorner 0\ncellsize 2.5\n${Array.from({ length: 32 }, (_, row) => Array.from({ length: 40 }, (_, column) => 20 - Math.hypot(2.5 * column - 60, 40 - 2.5 * row)).join(' ')).join('\n')}`;
   const raster = await after(page, () => page.setInputFiles('#file', { name: 'Hill.ASC', mimeType: 'text/plain', buffer: Buffer.from(grid) }));
   check(raster.refused === '' && raster.said.includes('In truth it lies') && (await toml(page)).includes('raster = "truth.asc", threshold = 0'), `a raster: ${raster.said}${raster.refused}`);
+  const png = await page.evaluate(() => {
+    const sheet = Object.assign(document.createElement('canvas'), { width: 50, height: 40 });
+    const own = sheet.getContext('2d');
+    own.fillRect(0, 0, 50, 40);
+    own.fillStyle = 'white';
+    own.fillRect(20, 12, 16, 14);
+    return sheet.toDataURL('image/png').split(',')[1];
+  });
+  const image = await after(page, () => page.setInputFiles('#file', { name: 'image.png', mimeType: 'image/png', buffer: Buffer.from(png, 'base64') }));
+  check(image.refused === '' && image.said.includes('In truth it lies') && (await toml(page)).includes('threshold = 128'), `an image: ${image.said}${image.refused}`);
   const higher = await after(page, async () => { await page.fill('[name=threshold]', '8'); await page.press('[name=threshold]', 'Tab'); });
   check(higher.refused === '' && (await toml(page)).includes('threshold = 8'), `a threshold: ${higher.said}${higher.refused}`);
   await looks(page, 'raster 1280');

@@ -5,7 +5,7 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(
     target_family = "wasm",
-    allow(clippy::zero_sized_map_values, reason = "no process has children there")
+    allow(dead_code, clippy::zero_sized_map_values, reason = "some is not for a browser")
 )]
 
 pub mod campaign;

@@ -17,7 +17,7 @@ let own = null;
 onmessage = async ({ data: { module, number, text, files } }) => {
   try {
     own ??= await simulator(module);
-    for (const [name, data] of Object.entries(files)) own.hand(name, Uint8Array.from(atob(data), (it) => it.charCodeAt(0)));
+    for (const [name, text] of Object.entries(files)) own.hand(name, new TextEncoder().encode(text));
     const said = own.run(text);
     postMessage({ number, ...said, chapter: said.isFlown ? own.scenes() : null });
   } catch (error) {
@@ -148,19 +148,19 @@ acts.stop.addEventListener('click', () => { halt(); show('Stopped.'); });
 acts.again.addEventListener('click', () => take({ ...made, text: null, seed: made.seed + 1 }));
 acts['run-text'].addEventListener('click', () => take({ ...made, text: part('text').value }));
 
-/** The most bytes of a raster: a link holds them. */
-const MOST_BYTES = 1_000_000;
+/** The longest grid: a link holds it. */
+const MOST_LETTERS = 1_000_000;
 
 /** Takes a file, dropped or chosen. */
 async function takeFile(file) {
   if (!file) return;
   try {
-    const ending = file.name.split('.').at(-1).toLowerCase();
-    if (RASTERS.test(`truth.${ending}`)) {
-      const bytes = new Uint8Array(await file.arrayBuffer());
-      if (bytes.length > MOST_BYTES) throw new Error(`found ${bytes.length} bytes, expected ${MOST_BYTES} at most`);
-      const raster = { name: `truth.${ending}`, data: btoa(Array.from(bytes, (it) => String.fromCharCode(it)).join('')), threshold: ending === 'png' ? 128 : 0 };
-      return take({ ...begun('shape', made.seed), raster });
+    if (file.type.startsWith('image/') || /\.asc$/i.test(file.name)) {
+      const next = begun('shape', made.seed);
+      const isGrid = !file.type.startsWith('image/');
+      const grid = isGrid ? await file.text() : await gridded(file, ground(next));
+      if (grid.length > MOST_LETTERS) throw new Error(`found ${grid.length} letters, expected ${MOST_LETTERS} at most`);
+      return take({ ...next, raster: { grid, threshold: isGrid ? 0 : 128 } });
     }
     const text = await file.text();
     if (form.isArea.checked) {

@@ -1,15 +1,15 @@
 // The same as a program: in Python with the simulator, in Rust with the planner for a robot of one's own.
 
 function python(state) {
-  const text = `\n${toml(state)}`.replaceAll('\\', '\\\\').replaceAll('"""', '\\"""');
-  const beside = Object.entries(files(state)).map(([name, data]) => `Path("${name}").write_bytes(b64decode("${data}"))\n`);
+  const quoted = (text) => text.replaceAll('\\', '\\\\').replaceAll('"""', '\\"""');
+  const all = { ...files(state), 'scenario.toml': `\n${toml(state)}` };
+  const written = Object.entries(all).map(([name, text]) => `Path("${name}").write_text("""${quoted(text)}""")\n`);
   return `# pip install ./python, in a copy of the repository
-${beside.length > 0 ? 'from base64 import b64decode\n' : ''}from pathlib import Path
+from pathlib import Path
 
 import boundary_planner as b
 
-${beside.join('')}Path("scenario.toml").write_text("""${text}""")
-flight = b.Mission("scenario.toml").run()
+${written.join('')}flight = b.Mission("scenario.toml").run()
 print(flight.end["reason"], flight.end)
 Path("scenario.html").write_text(flight.html())   # a page to step through
 `;

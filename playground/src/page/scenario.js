@@ -180,8 +180,7 @@ function truth(state) {
   const pairs = (those) => `[${those.map(([x, z]) => `[${x}, ${z}]`).join(', ')}]`;
   const { width, height } = ground(state);
   const isLine = kind === 'line' && state.raster === null;
-  const ofRaster = ({ name, threshold }) => `raster = "${name}", threshold = ${threshold}`;
-  const own = state.raster !== null ? ofRaster(state.raster) : {
+  const own = state.raster !== null ? `raster = "${RASTER}", threshold = ${state.raster.threshold}` : {
     line: () => `line = [${coefficients(points).join(', ')}]`,
     bend: () => `polyline = ${pairs(fromLeft(points))}`,
     circle: () => `circle = [${points[0].join(', ')}, ${tidy(Math.hypot(points[1][0] - points[0][0], points[1][1] - points[0][1]))}]`,
@@ -219,16 +218,30 @@ function known(state) {
   return places(ground(state), TOLD).map((at) => [...at, side(state, at)]).filter((it) => it[2] !== null);
 }
 
-/** The name of the map in a scenario, and names that rasters have there. */
+/** The names of the map and of the raster in a scenario. */
 const MAP = 'area.geojson';
-const RASTERS = /^truth\.(png|asc|tiff?)$/;
+const RASTER = 'truth.asc';
 
-/** The files beside a scenario, in base 64. */
+/** The files beside a scenario. */
 function files({ map, raster }) {
-  const all = {};
-  if (map !== null) all[MAP] = btoa(Array.from(new TextEncoder().encode(map), (it) => String.fromCharCode(it)).join(''));
-  if (raster !== null) all[raster.name] = raster.data;
-  return all;
+  return { ...(map === null ? {} : { [MAP]: map }), ...(raster === null ? {} : { [RASTER]: raster.grid }) };
+}
+
+/** The most cells of an image along a side. */
+const MOST_CELLS = 160;
+
+/** An image as a grid over a field: the luminance of its cells, 0 to 255. */
+async function gridded(file, { left, bottom, width, height }) {
+  const image = await createImageBitmap(file);
+  const scale = Math.min(1, MOST_CELLS / Math.max(image.width, image.height));
+  const [columns, rows] = [image.width, image.height].map((it) => Math.max(2, Math.round(it * scale)));
+  const sheet = new OffscreenCanvas(columns, rows).getContext('2d');
+  sheet.drawImage(image, 0, 0, columns, rows);
+  const { data } = sheet.getImageData(0, 0, columns, rows);
+  const cell = (k) => Math.round(0.2126 * data[4 * k] + 0.7152 * data[4 * k + 1] + 0.0722 * data[4 * k + 2]);
+  const line = (row) => Array.from({ length: columns }, (_, column) => cell(row * columns + column)).join(' ');
+  const head = `ncols ${columns}\nnrows ${rows}\nxllcorner ${left}\nyllcorner ${bottom}\ndx ${width / columns}\ndy ${height / rows}\n`;
+  return `${head}${Array.from({ length: rows }, (_, row) => line(row)).join('\n')}\n`;
 }
 
 /** The scenario file. */
@@ -284,12 +297,12 @@ function checked(found) {
   const among = (all, it) => all.some(([own]) => own === it);
   const { kind, size, points, start, told, moves, vehicle: drives, p, planner, seed, map, raster, text } = found;
   const isText = (it) => it === null || (typeof it === 'string' && it.length < 2_000_000);
-  const isRaster = raster === null || (RASTERS.test(raster.name) && isText(raster.data) && Number.isFinite(raster.threshold));
+  const isRaster = raster === null || (isText(raster.grid) && Number.isFinite(raster.threshold));
   const isSound =
     Object.hasOwn(KINDS, kind) && SIZES.includes(size) && Array.isArray(points) && points.length <= 500 && points.every(isPlace) && isPlace(start) &&
     points.length >= { line: 2, bend: 2, circle: 2, shape: 3, coast: 0 }[kind] && among(VEHICLES, drives) && among(SENSORS, p) && among(PLANNERS, planner) &&
     Number.isSafeInteger(seed) && seed >= 0 && isText(map) && isText(text) && isRaster;
   if (!isSound) return null;
   if (map !== null) mapped(map);
-  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, raster: raster && { name: raster.name, data: raster.data, threshold: raster.threshold }, text };
+  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, raster: raster && { grid: raster.grid, threshold: raster.threshold }, text };
 }

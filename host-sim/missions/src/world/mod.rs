@@ -10,6 +10,7 @@ pub mod extent;
 pub mod faults;
 pub mod files;
 pub mod frame;
+#[cfg(not(target_family = "wasm"))]
 pub mod geotiff;
 pub mod grid;
 pub(crate) mod in_order;

@@ -1,14 +1,16 @@
 //! Rasters as files have them: PNG images, grids of ESRI's ASCII format, and `GeoTIFF`.
 
-use std::io::{self, BufReader};
+use std::io;
+#[cfg(not(target_family = "wasm"))]
+use std::io::BufReader;
 use std::path::Path;
 
 use anyhow::{Context as _, Result, anyhow, bail};
 use nalgebra::Point2;
+#[cfg(not(target_family = "wasm"))]
 use png::{BitDepth, ColorType, Decoder, Transformations};
 
 use crate::world::files;
-use crate::world::geotiff;
 use crate::world::grid::{Grid, check_cells};
 
 /// The longest file, bytes.
@@ -26,21 +28,41 @@ pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
     }
     let found = files::size(path).filter(|it| *it <= MOST_BYTES);
     found.with_context(|| format!("a file, of {} MB at most", MOST_BYTES >> 20))?;
-    if is_tiff {
-        let grid = files::open(path)
-            .map_err(Into::into)
-            .and_then(|file| geotiff::read(BufReader::new(file)));
-        grid.map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
-    } else if ending == "png" {
-        image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
-    } else {
+    if ending == "asc" {
         let text = files::open(path).and_then(io::read_to_string);
         let text = text.map_err(|why| anyhow!("a text file: {why}"))?;
         ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
+    } else if is_tiff {
+        tiff(path).map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
+    } else {
+        image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
     }
 }
 
+#[cfg(target_family = "wasm")]
+use in_a_browser::{image, tiff};
+
+/// What reads these there would be a seventh of the page. The page itself brings images to a grid.
+#[cfg(target_family = "wasm")]
+mod in_a_browser {
+    use super::{Grid, Path, Point2, Result, bail};
+
+    pub(super) fn tiff(_: &Path) -> Result<Grid> {
+        bail!("a browser reads none, but an ESRI ASCII grid (.asc)")
+    }
+
+    pub(super) fn image(path: &Path, _: [Point2<f64>; 2]) -> Result<Grid> {
+        tiff(path)
+    }
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn tiff(path: &Path) -> Result<Grid> {
+    crate::world::geotiff::read(BufReader::new(files::open(path)?))
+}
+
 /// The luminance of each pixel, as the file has it: up to 255, with 16 bits up to 65535.
+#[cfg(not(target_family = "wasm"))]
 fn image(path: &Path, [min, max]: [Point2<f64>; 2]) -> Result<Grid> {
     let mut decoder = Decoder::new(BufReader::new(files::open(path)?));
     decoder.set_transformations(Transformations::EXPAND);
