@@ -3,13 +3,14 @@
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::given::Given;
 use host_sim::mission::scenario::{self, Overrides};
 use nalgebra::Point2;
-use planner_core::{Label, Sample, VersionSpace, Workspace as _};
+use planner_core::{Chart, Label, Sample, VersionSpace, Workspace as _};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -135,11 +136,42 @@ pub fn for_a_chip(number: u64, cells: u16, steps: u32) -> Mission {
                 samples.push(Sample { site, label });
             }
         }
-        if let Ok(lines) = VersionSpace::new(&samples) {
+        let lines = VersionSpace::new(&samples);
+        let told = mission.config.tolerance;
+        let is_usable = lines.as_ref().is_ok_and(|it| it.clone().with_tolerance(told).is_ok());
+        if let Some(lines) = lines.ok().filter(|_| is_usable) {
             mission.given = Given::from(lines);
             return mission;
         }
     }
     // The line leaves no water on one of its sides.
     for_a_chip(number + 36, cells, steps)
+}
+
+/// The same on a chart that is made up: all open, comb-like bays, a maze of a cell's width, ponds, or any cells. The start
+/// may be on land.
+///
+/// # Panics
+/// Never: it has a lake's size.
+pub fn made_up(number: u64, cells: u16, steps: u32) -> Mission {
+    let mut mission = for_a_chip(number, cells, steps);
+    let lake = mission.lake.as_mut().and_then(Arc::get_mut).expect("a lake of its own");
+    let ([columns, rows], corner) = (lake.chart.size(), lake.chart.bounds().min());
+    let words = Chart::words_in(columns);
+    let mut bits = vec![0_u32; words * usize::from(rows)];
+    let mut rng = ChaCha8Rng::seed_from_u64(seed(55) + number);
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |it| (row, it))) {
+        let is_open = match number / 9 % 5 {
+            0 => true,
+            1 => row % 4 > 0 || column < 3,
+            2 => row % 2 == 0 || column == if row % 4 == 1 { 0 } else { columns - 1 },
+            3 => row % 40 > 0 && column % 30 > 0,
+            _ => rng.random_range(0..12) > 0,
+        };
+        bits[usize::from(row) * words + usize::from(column / 32)] |=
+            u32::from(is_open) << (column % 32);
+    }
+    let chart = Chart::new(corner, lake.chart.side(), [columns, rows], Vec::leak(bits));
+    lake.chart = chart.expect("as the lake has");
+    mission
 }

@@ -30,6 +30,14 @@ fn in_lakes_a_chip_flies_as_here() {
     });
 }
 
+/// So it does on charts that no lake has: wide open, combs, mazes of a cell's width, ponds, and a start on land.
+#[test]
+fn on_made_up_charts_a_chip_flies_as_here() {
+    (0..cases(45, 720)).into_par_iter().for_each(|number| {
+        flies_as_here(&lakes::made_up(number, 128, 12), Faults::default());
+    });
+}
+
 const SIDE: u32 = 1_000;
 
 /// Cells of random sizes: all open, all closed, one cell, necks of a cell, or anything.
@@ -183,7 +191,7 @@ fn a_chart_that_is_spoilt_is_declined() {
     }
 }
 
-/// A mission in a lake is declined by a chip that has no charts, and the words name the map.
+/// A chip without charts sees from the count that it has to decline.
 #[test]
 fn a_setup_says_that_it_has_a_chart() {
     let mission = lakes::for_a_chip(18, 128, 8);

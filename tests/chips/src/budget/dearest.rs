@@ -46,15 +46,14 @@ pub fn dearest(elf: &[u8]) -> Vec<(u64, u64, String)> {
 
 /// The dearest plans in lakes on 128 x 128 cells, as [`dearest`] says them, of the program with charts.
 pub fn in_lakes(elf: &[u8]) -> Vec<(u64, u64, String)> {
-    let asked = |number| {
-        let mission = lakes::for_a_chip(number, 128, LABELS);
-        (flight::fly(&mission, mission.vehicle, u64::MAX).asked, number)
+    let numbers: Vec<u64> = (0..90).collect();
+    let mission = |number: u64| {
+        if number < 45 {
+            lakes::made_up(number, 128, 10)
+        } else {
+            lakes::for_a_chip(number - 45, 128, 24)
+        }
     };
-    let mut ranked: Vec<_> = (0..720).into_par_iter().map(asked).collect();
-    ranked.sort_unstable_by_key(|it| (Reverse(it.0), it.1));
-    println!("{:?}", &ranked[..60]);
-    let numbers: Vec<u64> = ranked.iter().map(|it| it.1).take(50).collect();
-    let mission = |number| lakes::for_a_chip(number, 128, LABELS);
     let mut plans = Vec::new();
     for Flight { number, plans: made, .. } in fly(Core::M4F, elf, &numbers, mission, None) {
         let Mission { algorithm, vehicle, noise, .. } = mission(number);
