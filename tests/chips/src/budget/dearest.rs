@@ -24,6 +24,9 @@ const SAMPLES: u32 = 36;
 /// The missions of which a long run found the dearest plans.
 const HARDEST: [u64; 4] = [339, 5550, 7052, 8678];
 
+/// Those in lakes.
+const IN_LAKES: [u64; 2] = [10, 44];
+
 /// The dearest plans of random missions: what they take, which mission each is of, and what flies and plans there. A long
 /// run seeks them among 20,000 missions by what their plans ask of the area, and flies 100 of these.
 pub fn dearest(elf: &[u8]) -> Vec<(u64, u64, String)> {
@@ -44,15 +47,13 @@ pub fn dearest(elf: &[u8]) -> Vec<(u64, u64, String)> {
     plans
 }
 
-/// The dearest plans in lakes on 128 x 128 cells, as [`dearest`] says them, of the program with charts.
+/// The dearest plans on 128 x 128 cells, as [`dearest`] says them: in lakes from maps, and on charts that are made up.
 pub fn in_lakes(elf: &[u8]) -> Vec<(u64, u64, String)> {
-    let numbers: Vec<u64> = (0..90).collect();
-    let mission = |number: u64| {
-        if number < 45 {
-            lakes::made_up(number, 128, 10)
-        } else {
-            lakes::for_a_chip(number - 45, 128, 24)
-        }
+    let numbers: Vec<u64> =
+        IN_LAKES.into_iter().chain((0..cases(6, 720)).map(|it| 7 * it)).collect();
+    let mission = |number| match number % 2 {
+        0 => lakes::for_a_chip(number / 2, 128, 24),
+        _ => lakes::made_up(number / 2, 128, 10),
     };
     let mut plans = Vec::new();
     for Flight { number, plans: made, .. } in fly(Core::M4F, elf, &numbers, mission, None) {
