@@ -17,7 +17,7 @@ const EXPECTED: [(&str, &str); 84] = [
     ("--p-prior", "the a and b of a Beta prior, as 8,2"),
     ("acceptance", "metres above 0"),
     ("algorithm", "the name of a planner in quotation marks, as \"lookahead\""),
-    ("area", "a table, { x, z } or { polygon }"),
+    ("area", "a table, { x, z }, { polygon } or { geojson = \"lake.geojson\" }"),
     ("area.x", "two numbers, [smallest, largest], metres"),
     ("area.z", "two numbers, [smallest, largest], metres"),
     ("audit", "true or false"),
