@@ -3,7 +3,8 @@
 //   node played.mjs PLAYGROUND.html SCENARIOS.json FOLDER
 //
 // saves the trace of each, or why it is refused, as FOLDER/NUMBER. They are flown in node; in Chromium, by the page, if the
-// name of the folder ends with `browser`. Ends with status 1 if the module is larger than it may be. SCENARIOS are a list of { text, files: { NAME: CONTENT } }.
+// name of the folder ends with `browser`. Ends with status 1 if the module is larger than it may be. SCENARIOS are a list
+// of { text, files: { NAME: CONTENT } }.
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
