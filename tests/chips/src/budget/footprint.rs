@@ -22,6 +22,10 @@ use crate::program::image::Image;
 pub const KNOWN: Known<'static> = &[
     ("bare_core::on_target::fly", &["bare_core::port::ticks"]),
     ("firmware::mission::Board::run", &["firmware::time::ticks"]),
+    (
+        "planner_core::link::station::planners::<impl planner_core::link::station::flight::Station<P,S>>::fly_with",
+        &["firmware::time::ticks"],
+    ),
     // It would wake tasks that wait on the monotonic. There are none.
     ("SysTick", &[]),
 ];
