@@ -2,12 +2,13 @@
 
 use std::time::Duration;
 
+use nalgebra::Point2;
 use planner_core::robot::AgentError;
 use planner_core::robot::Body;
 use planner_core::{Agent, Event, Motion, Planner as _, Pose, Reading, Site};
 
 use crate::fly::failure::Failure;
-use crate::fly::frame::{self, Ned};
+use crate::fly::frame::Local;
 use crate::fly::link::Link;
 use crate::fly::orders::Order;
 use crate::fly::pilot::Pilot;
@@ -34,6 +35,7 @@ pub struct Control<L> {
     link: L,
     pilot: Pilot,
     interrupted: fn() -> Option<i32>,
+    local: Local,
     /// Where it may be.
     area: Option<Terrain>,
     /// The motions so far, and the time from which theirs are counted.
@@ -53,10 +55,9 @@ pub struct Flight {
 
 impl<L: Link> Control<L> {
     /// A pilot at a link; `interrupted` returns the signal that is to end the program, if one arrived.
-    pub const fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
-        let legs = Vec::new();
-        let passed = Vec::new();
-        Self { link, pilot, interrupted, area: None, legs, began: Duration::ZERO, passed }
+    pub fn new(link: L, pilot: Pilot, interrupted: fn() -> Option<i32>) -> Self {
+        let (legs, passed, local) = (Vec::new(), Vec::new(), Local::default());
+        Self { link, pilot, interrupted, local, area: None, legs, began: Duration::ZERO, passed }
     }
 
     /// The link.
@@ -114,14 +115,19 @@ impl<L: Link> Control<L> {
     /// Where the mission begins: where the vehicle is.
     fn start(&mut self, mission: &Mission) -> Result<Pose, Failure> {
         let (fix, yaw) = self.pilot.whereabouts().ok_or(Failure::LatticeError)?;
-        let pose = frame::pose(mission.start, fix.at, yaw).ok_or(Failure::LatticeError)?;
+        self.local = Local::of(mission.lake.as_deref(), self.pilot.origin());
+        let pose = self.local.pose(mission.start, fix.at, yaw).ok_or(Failure::LatticeError)?;
         self.area = Some(mission.terrain());
         self.began = self.link.now();
         self.check(pose)?;
-        let off = fix.at.distance(mission.start.site.into());
+        let [at, start] = [pose.site, mission.start.site].map(Point2::<f64>::from);
+        let place = match mission.lake.as_ref().map(|it| it.frame.on_globe(at)) {
+            Some(Ok([lat, lon])) => format!("lat = {lat:.7}, lon = {lon:.7}"),
+            _ => format!("x = {:.2}, z = {:.2}", at.x, at.y),
+        };
         announce(format_args!(
-            "ready at x = {:.2}, z = {:.2}, {off:.2} m from the scenario's start: the mission begins here",
-            fix.at.east, fix.at.north,
+            "ready at {place}, {:.2} m from the scenario's start: the mission begins here",
+            (at - start).norm()
         ));
         Ok(pose)
     }
@@ -158,20 +164,20 @@ impl<L: Link> Body for Control<L> {
         self.passed.clear();
         let Motion { target, wants_label, .. } = *motion;
         let order = Order {
-            to: Ned::from(target.site),
-            yaw: frame::yaw(target.heading),
+            to: self.local.ned(target.site).ok_or(Failure::LatticeError)?,
+            yaw: self.local.yaw(target),
             is_turn: target.site == pose.site,
         };
         let began = self.link.now();
         self.pilot.order(began, order, wants_label);
         loop {
             for (at, label) in self.pilot.take_passed() {
-                let site = frame::site(at).ok_or(Failure::LatticeError)?;
+                let site = self.local.site(at).ok_or(Failure::LatticeError)?;
                 self.passed.push((site, label.into()));
                 tell(site, label.into());
             }
             if let Some(arrival) = self.pilot.take_arrival() {
-                let reached = frame::pose(target, arrival.fix.at, arrival.yaw);
+                let reached = self.local.pose(target, arrival.fix.at, arrival.yaw);
                 *pose = reached.ok_or(Failure::LatticeError)?;
                 // Within the acceptance it is not checked: motions keep a margin for that, or the user was warned.
                 if arrival.is_short {
@@ -226,6 +232,9 @@ pub fn fly_shown<L: Link>(
     control: &mut Control<L>,
     mut live: Option<&mut Live>,
 ) -> Result<Flight, Failure> {
+    if mission.lake.is_some() {
+        control.pilot.wants_origin();
+    }
     control.prepare(live.as_deref())?;
     mission.start = control.start(&mission)?;
     if let Some(live) = &mut live {

@@ -9,14 +9,13 @@ use std::time::Duration;
 use anyhow::Result;
 use mavlink::MavHeader;
 use mavlink::dialects::common::{
-    ATTITUDE_DATA, COMMAND_ACK_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavAutopilot,
-    MavMessage, MavModeFlag, MavState, MavType, NAMED_VALUE_FLOAT_DATA,
-    PositionTargetTypemask as Ignored, RC_CHANNELS_DATA,
+    ATTITUDE_DATA, COMMAND_ACK_DATA, GPS_GLOBAL_ORIGIN_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, MavAutopilot, MavMessage, MavModeFlag, MavState, MavType,
+    NAMED_VALUE_FLOAT_DATA, PositionTargetTypemask as Ignored, RC_CHANNELS_DATA,
 };
-use nalgebra::Point2;
-use planner_core::{Label, Reading, Site};
+use planner_core::{Label, Reading};
 
-use crate::fly::frame::{Ned, yaw};
+use crate::fly::frame::{Local, Ned};
 use crate::fly::label::{LabelSource, Source, channels};
 use crate::fly::link::Link;
 use crate::fly::orders::AUTOPILOT;
@@ -34,6 +33,9 @@ const DRIVE: f64 = 0.1;
 pub struct Ideal {
     system: u8,
     world: World,
+    local: Local,
+    /// On a map: the latitude and the longitude that its positions count from, those of the mission's start.
+    origin: Option<[f64; 2]>,
     labels: LabelSource,
     now: Duration,
     ticks: u32,
@@ -49,14 +51,22 @@ pub struct Ideal {
 impl Ideal {
     /// A vehicle at the start of a mission.
     pub fn new(mission: &Mission, system: u8, labels: LabelSource) -> Self {
+        let lake = mission.lake.as_deref();
+        let start = mission.start;
+        let origin = lake.and_then(|it| it.frame.on_globe(start.site.into()).ok());
+        // As a message tells it.
+        let origin = origin.map(|it| it.map(|degrees| (degrees * 1e7).round() * 1e-7));
+        let local = Local::of(lake, origin);
         Self {
             system,
             world: mission.world.clone(),
+            origin,
             labels,
             now: Duration::ZERO,
             ticks: 0,
-            at: mission.start.site.into(),
-            yaw: yaw(mission.start.heading),
+            at: local.ned(start.site).unwrap_or(Ned { north: 0.0, east: 0.0 }),
+            yaw: local.yaw(start),
+            local,
             to: None,
             said: VecDeque::new(),
             sent: Vec::new(),
@@ -108,12 +118,17 @@ impl Ideal {
         let attitude = ATTITUDE_DATA { time_boot_ms, yaw: self.yaw, ..ATTITUDE_DATA::DEFAULT };
         self.said.push_back(MavMessage::ATTITUDE(attitude));
         self.said.extend(self.label(time_boot_ms));
+        self.said.extend(self.origin.map(|origin| {
+            let [latitude, longitude] = origin.map(|it| (it * 1e7).round() as i32);
+            let it =
+                GPS_GLOBAL_ORIGIN_DATA { latitude, longitude, ..GPS_GLOBAL_ORIGIN_DATA::DEFAULT };
+            MavMessage::GPS_GLOBAL_ORIGIN(it)
+        }));
     }
 
     /// The message with the label at its place.
     fn label(&self, time_boot_ms: u32) -> Option<MavMessage> {
-        let at = Point2::new(f64::from(self.at.east), f64::from(self.at.north));
-        let reading = self.world.reading(Site::try_from(at).ok()?);
+        let reading = self.world.reading(self.local.site(self.at)?);
         let is_positive = reading == Reading::Side(Label::Positive);
         let value = self.labels.threshold + if is_positive { 1.0 } else { -1.0 };
         Some(match &self.labels.source {

@@ -17,8 +17,8 @@
 
 use std::time::Duration;
 
-use mavlink::MavHeader;
-use mavlink::dialects::common::MavMessage;
+use mavlink::dialects::common::{GPS_GLOBAL_ORIGIN_DATA, MavMessage};
+use mavlink::{MavHeader, MessageData as _};
 use planner_core::Label;
 
 use crate::fly::failure::Failure;
@@ -47,6 +47,7 @@ pub struct Pilot {
     limits: Limits,
     vehicle: Vehicle,
     requests: Requests,
+    wants_origin: bool,
     stage: Stage,
     beat: Option<Duration>,
     slide: Slide,
@@ -66,6 +67,7 @@ impl Pilot {
         Self {
             system,
             requests: Requests::new(&labels.source),
+            wants_origin: false,
             labels,
             limits,
             vehicle: Vehicle::default(),
@@ -104,6 +106,17 @@ impl Pilot {
     pub fn whereabouts(&self) -> Option<(Fix, f32)> {
         let (fix, facing) = self.vehicle.fix.zip(self.vehicle.facing)?;
         Some((fix.1, facing.yaw))
+    }
+
+    /// Waits for where the vehicle's local frame lies on the globe too.
+    pub(crate) fn wants_origin(&mut self) {
+        self.requests.want(GPS_GLOBAL_ORIGIN_DATA::ID, GPS_GLOBAL_ORIGIN_DATA::NAME);
+        self.wants_origin = true;
+    }
+
+    /// The latitude and longitude that its positions count from, once they are known.
+    pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
+        self.vehicle.origin
     }
 
     /// Has motions with so many labels, the one at the end included.
@@ -188,6 +201,7 @@ impl Pilot {
                     self.end(now, Some(fault));
                 }
             }
+            (_, News::Moved(metres)) => self.end(now, Some(Failure::Slid(metres))),
             (_, News::Breach) => self.end(now, Some(Failure::Fence)),
             (Stage::Moving { .. }, News::HeldBack) => self.end(now, Some(Failure::HeldBack)),
             (Stage::Stopping { .. }, News::Restart) => {

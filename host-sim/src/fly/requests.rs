@@ -37,6 +37,8 @@ pub struct Requests {
     all: Vec<Request>,
     /// How many of them have been answered.
     answered: usize,
+    /// Whether all were, before they were asked for anew.
+    is_anew: bool,
     /// How often the next has been sent, and when last.
     sent: Option<(u8, Duration)>,
     /// When the one before was answered.
@@ -56,18 +58,23 @@ impl Requests {
         if matches!(labels, Source::Channel(_)) {
             all.push(request(RC_CHANNELS_DATA::ID, RC_CHANNELS_DATA::NAME, true));
         }
-        Self { all, answered: 0, sent: None, completed: Duration::ZERO }
+        Self { all, answered: 0, is_anew: false, sent: None, completed: Duration::ZERO }
     }
 
-    /// The message whose request is not answered yet.
+    /// Asks for another one, without which nothing can be flown.
+    pub fn want(&mut self, id: u32, name: &'static str) {
+        self.all.push(Request { id, name, is_needed: true });
+    }
+
+    /// The message whose request was never answered.
     pub fn missing(&self) -> Option<&'static str> {
-        self.all.get(self.answered).map(|it| it.name)
+        self.all.get(self.answered).filter(|_| !self.is_anew).map(|it| it.name)
     }
 
     /// Begins anew if all was answered some time ago.
     pub fn renew(&mut self, now: Duration) {
-        if self.missing().is_none() && now >= self.completed + 4 * REPEAT {
-            (self.answered, self.sent) = (0, None);
+        if self.answered == self.all.len() && now >= self.completed + 4 * REPEAT {
+            (self.answered, self.is_anew, self.sent) = (0, true, None);
         }
     }
 
@@ -140,9 +147,15 @@ mod tests {
         assert_eq!(asked, [(0, 32, 0), (8, 30, 0), (13, 162, 0)]);
         assert_eq!(requests.missing(), None);
         // What does not arrive all the same is asked for anew, after a while.
-        requests.renew(requests.completed + 3 * REPEAT);
-        assert_eq!(requests.missing(), None);
-        requests.renew(requests.completed + 4 * REPEAT);
-        assert_eq!(requests.missing(), Some("LOCAL_POSITION_NED"));
+        for (later, due) in [(3, None), (4, Some(32))] {
+            let now = requests.completed + later * REPEAT;
+            requests.renew(now);
+            let asks = |it| match it {
+                MavMessage::COMMAND_LONG(it) => it.param1 as u32,
+                other => panic!("{other:?}"),
+            };
+            assert_eq!(requests.due(Envelope { system: 1, now }).map(asks), due);
+            assert_eq!(requests.missing(), None);
+        }
     }
 }

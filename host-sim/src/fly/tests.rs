@@ -28,6 +28,7 @@ mod endings;
 mod fronts;
 mod habits;
 mod live;
+mod maps;
 mod on_the_way;
 mod pymavlink;
 mod spoiled;

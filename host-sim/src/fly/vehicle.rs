@@ -7,7 +7,7 @@ use mavlink::dialects::common::{FenceMitigate, MavMessage, MavModeFlag, MavSever
 
 use crate::fly::autopilot::Craft;
 use crate::fly::failure::Failure;
-use crate::fly::frame::Ned;
+use crate::fly::frame::{Ned, apart_on_globe};
 use crate::fly::label::{LabelSource, Told};
 
 /// A clock that goes back by more than this was started anew, milliseconds. No message is as late.
@@ -103,6 +103,8 @@ pub enum News {
     HeldBack,
     /// Its clock went back.
     Restart,
+    /// Its positions count from elsewhere, so many metres away.
+    Moved(f64),
 }
 
 /// A vehicle as it is known. Times are ours.
@@ -112,6 +114,8 @@ pub struct Vehicle {
     pub status: Option<(Duration, Status)>,
     /// The last position, and when it came.
     pub fix: Option<(Duration, Fix)>,
+    /// The latitude and longitude that positions count from.
+    pub origin: Option<[f64; 2]>,
     /// The last attitude.
     pub facing: Option<Facing>,
     /// The last label.
@@ -160,6 +164,13 @@ impl Vehicle {
                     let fix = Fix { at_ms: it.time_boot_ms, at, down: it.z, velocity };
                     self.fix = Some((now, fix));
                     return Ok(Some(News::Fix(fix)));
+                }
+            }
+            MavMessage::GPS_GLOBAL_ORIGIN(it) => {
+                let origin = [it.latitude, it.longitude].map(|it| f64::from(it) * 1e-7);
+                if let Some(before) = self.origin.replace(origin).filter(|it| *it != origin) {
+                    let [north, east] = apart_on_globe(before, origin);
+                    return Ok(Some(News::Moved(libm::hypot(north, east))));
                 }
             }
             MavMessage::ATTITUDE(it) => {

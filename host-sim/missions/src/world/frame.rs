@@ -113,6 +113,27 @@ impl Frame {
         [lat, lon]
     }
 
+    /// Latitude and longitude of a position, with all digits.
+    ///
+    /// # Errors
+    /// Metres have none by themselves.
+    pub fn on_globe(&self, at: Point2<f64>) -> Result<[f64; 2]> {
+        let exactly = self.exactly(at);
+        match &self.crs {
+            _ if self.is_geographic() => Ok(exactly),
+            Some(crs) => crs.degrees(exactly),
+            None => bail!("found metres, expected latitude and longitude"),
+        }
+    }
+
+    /// The site of a latitude and a longitude.
+    ///
+    /// # Errors
+    /// As [`site`](Self::site), and where the system does not reach.
+    pub fn site_on_globe(&self, degrees: [f64; 2]) -> Result<Site> {
+        self.site(self.crs.as_ref().map_or(Ok(degrees), |crs| crs.metres(degrees))?)
+    }
+
     /// A position in coordinates of the map, the first one to the east: longitude and latitude, or metres of this system if
     /// there is one, of the frame's own if not.
     ///
@@ -123,10 +144,7 @@ impl Frame {
         Ok(match crs {
             None if self.is_geographic() => Point2::new(exactly[1], exactly[0]),
             None => exactly.into(),
-            Some(crs) => {
-                let own = self.crs.as_ref();
-                crs.metres(own.map_or(Ok(exactly), |own| own.degrees(exactly))?)?.into()
-            }
+            Some(crs) => crs.metres(self.on_globe(at)?)?.into(),
         })
     }
 
@@ -145,11 +163,7 @@ impl Frame {
     /// # Errors
     /// Metres have none by themselves.
     pub fn degrees(&self, at: Point2<f64>) -> Result<[f64; 2]> {
-        let [lat, lon] = match &self.crs {
-            _ if self.is_geographic() => self.recorded(at),
-            Some(crs) => crs.degrees(self.recorded(at))?.map(to_grain),
-            None => bail!("found metres, expected latitude and longitude"),
-        };
+        let [lat, lon] = self.on_globe(at)?.map(to_grain);
         Ok([lon, lat])
     }
 

@@ -14,6 +14,8 @@ impl Pilot {
                  station sets one (SET_GPS_GLOBAL_ORIGIN)"
                     .to_owned(),
             )
+        } else if self.wants_origin && self.vehicle.origin.is_none() {
+            Some("where its local positions count from (GPS_GLOBAL_ORIGIN)".to_owned())
         } else if self.vehicle.facing.is_none() {
             Some("its attitude (ATTITUDE)".to_owned())
         } else if self.vehicle.label.is_none() {
