@@ -12,7 +12,7 @@ import struct
 import sys
 import zlib
 
-PROTOCOL = 11
+PROTOCOL = 12
 METRE = 1 << 16
 TO_VEHICLE, TO_CHIP = ord("?"), ord("!")
 HERE = pathlib.Path(__file__).parent

@@ -1,5 +1,5 @@
 //! Instructions that armagnac 0.3 has but leaves undefined in cases that programs reach: shifts by 32 and more, and
-//! divisions by zero.
+//! divisions by zero, and flags that are set from a register.
 
 use armagnac::core::{Effect, ItState, Processor};
 use armagnac::instructions::DecodeHelper;
@@ -39,6 +39,11 @@ pub(super) fn decode_wide(code: u32) -> Option<Decoded> {
         }),
         0xfbb if fields == 0xf0f0 => added(move |p| {
             p.set(rd, p[rn].checked_div(p[rm]).unwrap_or(0));
+            Ok(Effect::None)
+        }),
+        // MSR of the flags: compilers keep them in a register over a call.
+        0xf38 if code & 0xffff == 0x8800 => added(move |p| {
+            p.registers.psr.set_apsr(p[rn]);
             Ok(Effect::None)
         }),
         _ => return None,
