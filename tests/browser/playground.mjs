@@ -6,7 +6,7 @@
 // saves in the folder what it looked like, and what was copied as TOML, Rust and Python. Ends with status 1 and a line for
 // each fault.
 
-import { writeFileSync } from 'node:fs';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 

@@ -217,7 +217,7 @@ fn missions(vectors: &mut Vectors) {
     vectors.add("outline-the-border", 11, 2, outline());
     vectors.add("outline-a-disc", 11, 3, outline());
 
-    let in_lake = lakes::mission(18, 24);
+    let in_lake = lakes::mission(20, 24);
     let by_map = setup(&in_lake, LabelSource::Vehicle);
     vectors.add("setup-in-a-lake", 17, 1, Reply::Setup(by_map));
     let chart = in_lake.lake.expect("a lake").chart;

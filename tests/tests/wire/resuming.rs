@@ -179,7 +179,7 @@ fn missions() -> Vec<(Mission, LabelSource)> {
     let of_readings = (0..few(12)).map(|number| reading(of_any_vehicle(number, 4)));
     let of_fronts = (0..4).map(|number| following(6, number, 12));
     let of_fronts = of_fronts.chain((0..few(4)).map(|number| reading(following(7, number, 6))));
-    let of_lakes = (0..few(4)).map(|number| lakes::for_a_chip(9 * number, 64, 6));
+    let of_lakes = (0..few(4)).map(|number| lakes::for_a_chip(10 * number, 64, 6));
     let all = by_turns.chain(of_vehicles).chain(of_readings).chain(of_fronts).chain(of_lakes);
     let by_source = |mission: Mission| {
         // A chip's sensor has no robot that errs to ask where it truly is.

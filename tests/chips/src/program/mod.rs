@@ -63,7 +63,9 @@ fn build(package: &str, target: &str, program: &str) -> PathBuf {
         .args(["build", "--quiet", "--profile", profile, "--package", package, "--target", target])
         .arg("--target-dir")
         .arg(&directory)
-        .env("DEFMT_LOG", "info");
+        .env("DEFMT_LOG", "info")
+        // Incremental builds inline otherwise, and what they measure is of no program that ships.
+        .env("CARGO_INCREMENTAL", "0");
     if !program.is_empty() {
         cargo.args(["--bin", program]);
     }
