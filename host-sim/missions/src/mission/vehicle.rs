@@ -185,7 +185,7 @@ impl VehicleTable {
             ("shortest", self.shortest.is_some(), is_car),
         ] {
             if is_there && !means {
-                let kind = format!("with a {:?}", self.kind).to_lowercase();
+                let kind = format!("with a {:?}", self.kind).to_ascii_lowercase();
                 let has_it = if is_car { "with a unicycle or a boat" } else { "with a car" };
                 return wrong(&source.name(key), kind, has_it);
             }

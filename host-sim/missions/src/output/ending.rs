@@ -32,7 +32,7 @@ const OTHERS: [&str; 20] = [
 pub fn check(flag: &str, path: &Path) -> Result<()> {
     let Some((_, own)) = WRITTEN.iter().find(|(it, _)| *it == flag) else { return Ok(()) };
     let Some(ending) = path.extension().and_then(|it| it.to_str()) else { return Ok(()) };
-    let ending = ending.to_lowercase();
+    let ending = ending.to_ascii_lowercase();
     let is_known = WRITTEN.iter().flat_map(|(_, all)| *all).chain(&OTHERS).any(|it| *it == ending);
     if is_known && !own.contains(&&*ending) {
         let (path, usual) = (path.display(), own[0]);

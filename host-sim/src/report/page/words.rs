@@ -223,7 +223,8 @@ pub(crate) fn minus(text: &str) -> String {
     let (mut signed, mut before) = (String::with_capacity(text.len()), ' ');
     for (at, it) in text.char_indices() {
         let is_before_digit = || text[at + 1..].starts_with(|it: char| it.is_ascii_digit());
-        let is_sign = it == '-' && !before.is_alphanumeric() && before != '-' && is_before_digit();
+        let is_sign =
+            it == '-' && !before.is_ascii_alphanumeric() && before != '-' && is_before_digit();
         signed.push(if is_sign { '\u{2212}' } else { it });
         before = it;
     }
@@ -232,5 +233,7 @@ pub(crate) fn minus(text: &str) -> String {
 
 fn sentence(words: &str) -> String {
     let mut letters = words.chars();
-    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or(String::new(), |first| {
+        iter::once(first.to_ascii_uppercase()).chain(letters).collect()
+    })
 }
