@@ -11,7 +11,7 @@ use crate::robot::hal::Drive;
 
 /// A motor behind a bridge with one input for the speed and one for the direction.
 ///
-/// For a bridge with two inputs for the direction, such as the L298N, give an [`OutputPin`] that sets both.
+/// A bridge such as the L298N has two inputs for the direction. Give an [`OutputPin`] that sets one high and the other low.
 #[derive(Clone, Debug)]
 pub struct Motor<P, D> {
     speed: P,
@@ -56,11 +56,11 @@ pub struct Wheels {
 }
 
 impl Wheels {
-    /// The duty cycle of both motors while they run, 1 to 100; how fast the robot then drives, millimetres a second; and how
-    /// fast it turns on the spot with its wheels against each other, milliradians a second.
+    /// `percent` is the duty cycle while the motors run, 1 to 100. `mm_per_s` is the speed straight on, and `mrad_per_s` that of
+    /// a turn on the spot, with the wheels against each other.
     ///
     /// # Errors
-    /// [`ValueError`] for a duty cycle above 100, and for any that is zero.
+    /// [`ValueError`] if `percent` is above 100, or any of the three is zero.
     pub const fn new(percent: u8, mm_per_s: u32, mrad_per_s: u32) -> Result<Self, ValueError> {
         if percent == 0 || percent > 100 {
             return Err(ValueError("a duty cycle is 1 to 100 percent"));
@@ -74,9 +74,9 @@ impl Wheels {
 
 /// A drive of two wheels, for the motions of a [`Unicycle`](crate::Unicycle): it turns on the spot, then drives straight.
 ///
-/// Motors run for as long as the [speeds](Wheels) ask for, and stop. Then `locate` says where the robot stands. Without
-/// any localisation that is where the motion leads: `|motion| Ok::<_, Infallible>(motion.target)`. The robot is then off
-/// by ever more, so give the belief a tolerance of what it is off at the end.
+/// Each motion is timed by the measured [speeds](Wheels), and `drive` waits until the motors have stopped. So feed a watchdog
+/// in the delay. Then `locate` says where the robot stands. Without localisation return the target: `|motion| Ok::<_,
+/// Infallible>(motion.target)`. The error then grows with each motion. Set the belief's tolerance to the error at the end.
 ///
 /// After an error both motors are told to stop. `examples/two_wheels.rs` is a whole program.
 #[derive(Clone, Debug)]
@@ -101,8 +101,8 @@ pub enum WheelsError<E> {
 }
 
 impl<P, D, T, F> TwoWheels<P, D, T, F> {
-    /// A drive of the left motor and the right one. Both are of one type: where channels or pins have types of their own,
-    /// erase them, or pass `&mut dyn`.
+    /// A drive of the left motor and the right one. Both are of one type: if their channels or pins differ in type, erase them,
+    /// or pass `&mut dyn SetDutyCycle<Error = E>`.
     pub const fn new(motors: [Motor<P, D>; 2], wheels: Wheels, delay: T, locate: F) -> Self {
         Self { motors, wheels, delay, locate }
     }

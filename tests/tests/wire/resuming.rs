@@ -98,8 +98,11 @@ impl<'a> Yard<'a> {
             self.again = (self.again.0.max(*requests), self.again.1.max(time));
             self.since = None;
         } else {
-            *requests +=
-                u64::from(is_new && !matches!(request, Request::Outline(_) | Request::Move(_)));
+            let is_of_ground = matches!(
+                request,
+                Request::Outline(_) | Request::Chart | Request::Cells(_) | Request::Move(_)
+            );
+            *requests += u64::from(is_new && !is_of_ground);
         }
     }
 }

@@ -429,7 +429,7 @@ fn the_header_compiles_as_c99_and_as_cpp11() {
 
 /// Calls, and the stack that docs/c.md says they take on a Cortex-M4F at most, bytes.
 const STACKS: [(&str, &[&str], u32); 10] = [
-    ("`planner_begin`", &["begin", "check"], 32_000),
+    ("`planner_begin`", &["begin", "check"], 18_000),
     ("`planner_plan`", &["plan"], 15_000),
     (
         "`planner_observe` and others",
