@@ -62,8 +62,9 @@ function landed({ number, isFlown, notes, chapter }) {
   present(chapter);
   boundary = chapter.flights[0].boundary.flatMap((it) => it.ways);
   field.draw();
-  const { scenes } = chapter.flights[0];
-  const of = (heading) => scenes.at(-1).told.find((it) => it.of === heading)?.text ?? '';
+  const { scenes, ended } = chapter.flights[0];
+  const told = [...ended, ...scenes.at(-1).told];
+  const of = (heading) => told.find((it) => it.of === heading)?.text ?? '';
   const truly = of('Map').split('\n').find((it) => it.startsWith('In truth')) ?? '';
   show([`${scenes.length - 1} steps.`, of('Ended'), of('Estimate'), truly, notes].filter(Boolean).join(' '));
 }
