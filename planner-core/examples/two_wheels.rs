@@ -59,7 +59,7 @@ impl Robot {
         let Pose { site, heading } = self.world.pose();
         let at = Point2::<f64>::from(site);
         let middle = heading.radians() + (right - left) / 0.5 * seconds / 2.0;
-        let ahead = (left + right) / 2.0 * seconds;
+        let ahead = f64::midpoint(left, right) * seconds;
         let end = [at.x + ahead * middle.cos(), at.y + ahead * middle.sin()];
         let turned = heading.radians() + (right - left) / 0.5 * seconds;
         let heading = Heading::from_radians(turned).expect("an angle");

@@ -1,7 +1,7 @@
 //! The simulator as a WebAssembly module: a scenario in, its trace and its scenes out.
 //!
-//! Texts go in and out through one buffer. The page asks for [`room`], writes there and calls [`hand`] or [`run`].
-//! [`text`] puts an answer into the buffer. The module imports nothing.
+//! Texts go in and out through one buffer. The page asks for `room`, writes there and calls `hand` or `run`.
+//! `text` puts an answer into the buffer. The module imports nothing.
 
 #![cfg(target_family = "wasm")]
 

@@ -109,6 +109,9 @@ pub fn mission(number: u64, cells: u16) -> Mission {
 
 /// The same as a chip is able to fly it: planners of a line are given four samples on the water, as a chip does not seek
 /// them, and look-ahead has the room for 32 labels. Of those with true labels every second is flown by Algorithm 1.
+///
+/// # Panics
+/// As [`mission`].
 pub fn for_a_chip(number: u64, cells: u16, steps: u32) -> Mission {
     let mut mission = mission(number, cells);
     mission.steps = steps.min(mission.steps);
@@ -161,7 +164,7 @@ pub fn made_up(number: u64, cells: u16, steps: u32) -> Mission {
     let mut bits = vec![0_u32; words * usize::from(rows)];
     let mut rng = ChaCha8Rng::seed_from_u64(seed(55) + number);
     for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |it| (row, it))) {
-        let is_open = match number / 9 % 5 {
+        let is_open = match number / 10 % 5 {
             0 => true,
             1 => row % 4 > 0 || column < 3,
             2 => row % 2 == 0 || column == if row % 4 == 1 { 0 } else { columns - 1 },

@@ -70,7 +70,7 @@ impl Local {
     /// Where a site lies; `None` if the map has no latitude there.
     pub fn ned(&self, site: Site) -> Option<Ned> {
         let Some(on) = &self.0 else { return Some(site.into()) };
-        let [north, east] = on.from_origin(site.into())?;
+        let [north, east] = on.north_east(site.into())?;
         Some(Ned { north: north as f32, east: east as f32 })
     }
 
@@ -106,13 +106,13 @@ impl Local {
 
 impl OnMap {
     /// How far north and east of the vehicle's origin a place of the map lies, metres.
-    fn from_origin(&self, at: Point2<f64>) -> Option<[f64; 2]> {
+    fn north_east(&self, at: Point2<f64>) -> Option<[f64; 2]> {
         Some(apart_on_globe(self.origin, self.map.on_globe(at).ok()?))
     }
 
     /// By how much the map's north is turned to the east, as the vehicle sees it.
     fn turn(&self, at: Point2<f64>) -> Option<f64> {
-        let [from, to] = [at, at + Vector2::y() * AHEAD].map(|it| self.from_origin(it));
+        let [from, to] = [at, at + Vector2::y() * AHEAD].map(|it| self.north_east(it));
         let ([n, e], [north, east]) = (from?, to?);
         Some(libm::atan2(east - e, north - n))
     }

@@ -32,7 +32,7 @@ use crate::fly::orders::{AUTOPILOT, Envelope, Order, heartbeat};
 use crate::fly::requests::Requests;
 use crate::fly::slide::Slide;
 use crate::fly::stage::{Arrival, Motion, Stage};
-use crate::fly::vehicle::{Fix, News, Status, Vehicle};
+use crate::fly::vehicle::{self, Fix, News, Status, Vehicle};
 
 mod arriving;
 mod driving;
@@ -115,8 +115,8 @@ impl Pilot {
     }
 
     /// The latitude and longitude that its positions count from, once they are known.
-    pub(crate) const fn origin(&self) -> Option<[f64; 2]> {
-        self.vehicle.origin
+    pub(crate) fn origin(&self) -> Option<[f64; 2]> {
+        self.vehicle.origin.map(vehicle::degrees)
     }
 
     /// Has motions with so many labels, the one at the end included.

@@ -114,8 +114,8 @@ pub struct Vehicle {
     pub status: Option<(Duration, Status)>,
     /// The last position, and when it came.
     pub fix: Option<(Duration, Fix)>,
-    /// The latitude and longitude that positions count from.
-    pub origin: Option<[f64; 2]>,
+    /// The latitude and longitude that positions count from, units of 1e-7 degrees.
+    pub origin: Option<[i32; 2]>,
     /// The last attitude.
     pub facing: Option<Facing>,
     /// The last label.
@@ -167,9 +167,9 @@ impl Vehicle {
                 }
             }
             MavMessage::GPS_GLOBAL_ORIGIN(it) => {
-                let origin = [it.latitude, it.longitude].map(|it| f64::from(it) * 1e-7);
+                let origin = [it.latitude, it.longitude];
                 if let Some(before) = self.origin.replace(origin).filter(|it| *it != origin) {
-                    let [north, east] = apart_on_globe(before, origin);
+                    let [north, east] = apart_on_globe(degrees(before), degrees(origin));
                     return Ok(Some(News::Moved(libm::hypot(north, east))));
                 }
             }
@@ -203,4 +203,9 @@ impl Vehicle {
         }
         Ok(None)
     }
+}
+
+/// Latitude and longitude of units of 1e-7 degrees.
+pub(crate) fn degrees(place: [i32; 2]) -> [f64; 2] {
+    place.map(|it| f64::from(it) * 1e-7)
 }

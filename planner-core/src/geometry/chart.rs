@@ -415,7 +415,7 @@ mod tests {
                 let home = chart.way_home(from, 300).map(|way| from.step(way).unwrap());
                 match home {
                     Some(home) => {
-                        assert!(chart.holds(&[home], 300) && chart.holds(&[from, home], 0))
+                        assert!(chart.holds(&[home], 300) && chart.holds(&[from, home], 0));
                     }
                     None => assert!(chart.holds(&[from], 300), "{from:?}"),
                 }

@@ -130,7 +130,7 @@ pub enum Request {
 }
 
 /// What the vehicle answers.
-#[expect(clippy::large_enum_variant, reason = "there is one at a time, and no heap")]
+#[allow(clippy::large_enum_variant, reason = "there is one at a time, and no heap")]
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Reply {

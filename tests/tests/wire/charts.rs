@@ -1,5 +1,10 @@
 //! Charts: missions in lakes over the link, and charts that do not arrive.
 
+#![expect(
+    clippy::redundant_closure_for_method_calls,
+    reason = "a method takes an area of one lifetime alone"
+)]
+
 use host_sim::hil::faults::Faults;
 use host_sim::hil::setup;
 use planner_core::link::message::{
@@ -103,7 +108,7 @@ fn a_chart_arrives_piece_by_piece() {
         let chart = Chart::new(corner, SIDE, size, &cells).expect("a chart");
         let sent = (&chart, ChartShape::of(&chart));
         let as_it_is = |piece| Some(Reply::Cells(piece));
-        let (_, asked) = received::<Large, _>(sent, chart.bounds(), as_it_is, |area| {
+        let ((), asked) = received::<Large, _>(sent, chart.bounds(), as_it_is, |area| {
             let area = area.expect("it is accepted");
             assert_eq!(area.chart(), Some(chart));
             assert_eq!(area.keep_outs().count(), 1);
