@@ -18,7 +18,6 @@ use crate::world::circle::Circle;
 use crate::world::crs::Crs;
 use crate::world::extent::around;
 use crate::world::files;
-use crate::world::grid::drawn_on;
 use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
@@ -126,7 +125,9 @@ impl TruthTable {
             if let Some(lake) = map {
                 let crs = self.crs.as_deref().map(str::parse::<Crs>).transpose();
                 let crs = crs.map_err(|error| anyhow!("truth.crs: {error}"))?;
-                let drawn = drawn_on(&grid, rectangle, |at| lake.frame.on_map(at, crs.as_ref()));
+                let middle = grid.middle();
+                let drawn =
+                    grid.drawn_on(rectangle, |at| lake.frame.on_map(at, crs.as_ref(), middle));
                 grid = drawn.or_else(|why| wrong("truth.raster", name, why))?;
             } else if let Some([x, z]) = grid.brought_to(rectangle) {
                 mention(format_args!(

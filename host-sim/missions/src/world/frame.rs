@@ -134,15 +134,23 @@ impl Frame {
         self.site(self.crs.as_ref().map_or(Ok(degrees), |crs| crs.metres(degrees))?)
     }
 
-    /// A position in coordinates of the map, the first one to the east: longitude and latitude, or metres of this system if
-    /// there is one, of the frame's own if not.
+    /// A position in coordinates of the map, the first one to the east. They are metres of this system, if there is one. If not,
+    /// they are the frame's own: metres, or longitude and latitude, with longitudes counted from about `middle`.
     ///
     /// # Errors
     /// The system does not reach there.
-    pub fn on_map(&self, at: Point2<f64>, crs: Option<&Crs>) -> Result<Point2<f64>> {
+    pub fn on_map(
+        &self,
+        at: Point2<f64>,
+        crs: Option<&Crs>,
+        middle: Point2<f64>,
+    ) -> Result<Point2<f64>> {
         let exactly = self.exactly(at);
         Ok(match crs {
-            None if self.is_geographic() => Point2::new(exactly[1], exactly[0]),
+            None if self.is_geographic() => {
+                let east = libm::remainder(exactly[1] - middle.x, 360.0);
+                Point2::new(middle.x + east, exactly[0])
+            }
             None => exactly.into(),
             Some(crs) => crs.metres(self.on_globe(at)?)?.into(),
         })

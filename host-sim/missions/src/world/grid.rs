@@ -24,21 +24,75 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The value of the cell that a place lies in; not a number beyond.
-    fn value(&self, at: Point2<f64>) -> f64 {
-        let rows = self.values.len() / self.columns;
-        let [column, row] = [0, 1].map(|k| ((at[k] - self.corner[k]) / self.cell[k]).floor());
-        if column < 0.0 || row < 0.0 || column >= self.columns as f64 || row >= rows as f64 {
-            return f64::NAN;
+    fn rows(&self) -> usize {
+        self.values.len() / self.columns
+    }
+
+    /// How far it reaches from its corner, metres.
+    fn size(&self) -> Vector2<f64> {
+        Vector2::new(self.cell[0] * self.columns as f64, self.cell[1] * self.rows() as f64)
+    }
+
+    /// Its middle.
+    pub fn middle(&self) -> Point2<f64> {
+        self.corner + self.size() / 2.0
+    }
+
+    /// The column and the row from the least z of the cell that a place lies in, and whether there is one. Beyond the grid the
+    /// nearest one.
+    fn cell_at(&self, at: Point2<f64>) -> ([usize; 2], bool) {
+        let [x, z] = [0, 1].map(|k| ((at[k] - self.corner[k]) / self.cell[k]).floor());
+        let nearest = |it: f64, count: usize| it.clamp(0.0, count as f64 - 1.0);
+        let cell = [nearest(x, self.columns), nearest(z, self.rows())];
+        (cell.map(|it| it as usize), cell == [x, z])
+    }
+
+    /// The same values drawn anew on a rectangle of another map; `source` brings its places to this one.
+    ///
+    /// # Errors
+    /// That of `source`, and if nothing of the grid lies in the rectangle.
+    pub(crate) fn drawn_on(
+        &self,
+        [min, max]: [Point2<f64>; 2],
+        source: impl Fn(Point2<f64>) -> Result<Point2<f64>>,
+    ) -> Result<Self> {
+        let size = max - min;
+        let [from, to] = [source(min)?, source(max)?];
+        // The size of a cell on the rectangle, by how far apart its corners are here.
+        let own = [0, 1].map(|k| self.cell[k] * size[k] / (to[k] - from[k]).abs() / FINER);
+        let least = (size.x * size.y / MOST_CELLS as f64).sqrt() * 1.01;
+        let side = own[0].min(own[1]).max(least).min(size.min());
+        let [columns, rows] = [size.x, size.y].map(|it| (it / side).ceil() as usize);
+        let source = |column: usize, row: usize| {
+            source(min + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * side)
+        };
+        let (mut values, mut is_met) = (vec![f64::NAN; columns * rows], false);
+        for (top, left) in blocks(rows, columns) {
+            let [right, bottom] = [left + KNOTS, top + KNOTS];
+            let above = [source(left, top)?, source(right, top)?];
+            let below = [source(left, bottom)?, source(right, bottom)?];
+            for (row, column) in (top..rows.min(bottom))
+                .flat_map(|z| (left..columns.min(right)).map(move |x| (z, x)))
+            {
+                let [u, v] = [column - left, row - top].map(|it| it as f64 / KNOTS as f64);
+                let [above, below] = [above, below].map(|[a, b]| a.lerp(&b, u));
+                let ([x, z], is_inside) = self.cell_at(above.lerp(&below, v));
+                is_met |= is_inside;
+                // Rows stand from the greatest z down.
+                values[(rows - 1 - row) * columns + column] =
+                    self.values[(self.rows() - 1 - z) * self.columns + x];
+            }
         }
-        self.values[(rows - 1 - row as usize) * self.columns + column as usize]
+        if !is_met {
+            bail!("one of the ground of the area, in the coordinates of the area or of truth.crs");
+        }
+        Ok(Self { corner: min, cell: [side; 2], columns, values })
     }
 
     /// Puts its least corner at that of a rectangle, if it lies beyond the lattice, as a raster in coordinates of a map
     /// does. Returns where the corner was.
     pub fn brought_to(&mut self, rectangle: [Point2<f64>; 2]) -> Option<[f64; 2]> {
-        let rows = self.values.len() / self.columns;
-        let size = [self.cell[0] * self.columns as f64, self.cell[1] * rows as f64];
+        let size = self.size();
         let corner: [f64; 2] = self.corner.into();
         let is_beyond = |axis: usize| corner[axis] > REACH || corner[axis] + size[axis] < -REACH;
         (is_beyond(0) || is_beyond(1)).then(|| {
@@ -48,48 +102,17 @@ impl Grid {
     }
 }
 
-/// Places between which a way of bringing places elsewhere counts as straight, cells.
+/// Cells between two places that are brought to another map; those between lie on a straight line.
 const KNOTS: usize = 32;
 
-/// Draws a grid anew where another map lies: `source` says where on the old grid a place of the rectangle is. The cells are
-/// of the old size, or larger if they would be too many. Each has the value of the old cell that its middle lies in.
-///
-/// # Errors
-/// That of `source`, and if nothing of the old grid lies in the rectangle.
-pub(crate) fn drawn_on(
-    old: &Grid,
-    [min, max]: [Point2<f64>; 2],
-    source: impl Fn(Point2<f64>) -> Result<Point2<f64>>,
-) -> Result<Grid> {
-    let size = max - min;
-    let [from, to] = [source(min)?, source(max)?];
-    let scale = [(to.x - from.x).abs() / size.x, (to.y - from.y).abs() / size.y];
-    let least = (size.x * size.y / MOST_CELLS as f64).sqrt() * 1.01;
-    let side = (old.cell[0] / scale[0]).min(old.cell[1] / scale[1]).max(least).min(size.min());
-    let [columns, rows] = [size.x, size.y].map(|it| (it / side).ceil() as usize);
-    let middle = |column: usize, row: usize| {
-        min + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * side
-    };
-    let mut values = vec![f64::NAN; columns * rows];
-    for (top, left) in
-        (0..rows).step_by(KNOTS).flat_map(|z| (0..columns).step_by(KNOTS).map(move |x| (z, x)))
-    {
-        let corner = |x, z| source(middle(left + x, top + z));
-        let [a, b, c, d] =
-            [corner(0, 0)?, corner(KNOTS, 0)?, corner(0, KNOTS)?, corner(KNOTS, KNOTS)?];
-        for (row, column) in (top..rows.min(top + KNOTS))
-            .flat_map(|z| (left..columns.min(left + KNOTS)).map(move |x| (z, x)))
-        {
-            let [u, v] = [column - left, row - top].map(|it| it as f64 / KNOTS as f64);
-            let at = a.lerp(&b, u).lerp(&c.lerp(&d, u), v);
-            // Rows stand from the greatest z down.
-            values[(rows - 1 - row) * columns + column] = old.value(at);
-        }
-    }
-    if values.iter().all(|it| it.is_nan()) {
-        bail!("one of the ground of the area, in the coordinates of the area or of truth.crs");
-    }
-    Ok(Grid { corner: min, cell: [side; 2], columns, values })
+/// On another map a cell is drawn by so many along each axis, so that its sides lie within an eighth of a cell of where they
+/// were.
+const FINER: f64 = 4.0;
+
+/// The first row and the first column of each block of [`KNOTS`] rows and columns.
+fn blocks(rows: usize, columns: usize) -> impl Iterator<Item = (usize, usize)> {
+    let all = (0..rows).step_by(KNOTS);
+    all.flat_map(move |row| (0..columns).step_by(KNOTS).map(move |column| (row, column)))
 }
 
 /// Whether there are so many cells as can be handled.
