@@ -3,7 +3,7 @@
 const TEMPLATE: &str = include_str!("page/index.html");
 
 /// What fills the slots of the template.
-const SLOTS: [(&str, &[&str]); 4] = [
+const SLOTS: [(&str, &[&str]); 5] = [
     (
         "style",
         &[
@@ -11,6 +11,7 @@ const SLOTS: [(&str, &[&str]); 4] = [
             include_str!("page/playground.css"),
         ],
     ),
+    ("controls", &[include_str!("../../host-sim/src/report/page/controls.html")]),
     // It draws missions.
     (
         "drawing",

@@ -107,8 +107,8 @@ pub fn mission(number: u64, cells: u16) -> Mission {
     );
 }
 
-/// The same as a chip is able to fly it: planners of a line are given four samples on the water, as a chip does not seek
-/// them, and look-ahead has the room for 32 labels. Of those with true labels every second is flown by Algorithm 1.
+/// The same as a chip is able to fly it. Planners of a line are given four samples on the water, as a chip does not seek
+/// them. Look-ahead has room for 32 labels. Of missions with true labels every second is flown by Algorithm 1.
 ///
 /// # Panics
 /// As [`mission`].

@@ -19,4 +19,5 @@ pub(crate) mod mark;
 pub(crate) mod polygon_area;
 pub(crate) mod span;
 pub(crate) mod value;
+pub(crate) mod walk;
 pub(crate) mod workspace;

@@ -13,7 +13,7 @@ use host_sim::report::live::Live;
 use host_sim::report::page::{Chapter, Page};
 use tests::build;
 
-use crate::page::missing;
+use crate::page::lacks_browser;
 
 #[test]
 fn a_line_in_a_browser() {
@@ -32,8 +32,7 @@ fn a_spill_in_a_browser() {
 
 fn look_at(name: &str, text: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
-    if let Some(missing) = missing() {
-        build::skip("pages in a browser", &missing);
+    if lacks_browser("pages in a browser") {
         return;
     }
     let place = build::scratch().join("pages");

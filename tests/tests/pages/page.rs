@@ -35,8 +35,7 @@ fn a_spill_in_a_browser() {
 
 fn look_at(name: &str, page: fn() -> String) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
-    if let Some(missing) = missing() {
-        build::skip("pages in a browser", &missing);
+    if lacks_browser("pages in a browser") {
         return;
     }
     let place = build::scratch().join("pages");
@@ -52,8 +51,16 @@ fn look_at(name: &str, page: fn() -> String) {
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&said));
 }
 
-/// What is not there that the browser needs.
-pub(crate) fn missing() -> Option<String> {
+/// Whether something that a browser needs is not there; then a visible line says what is skipped.
+pub(crate) fn lacks_browser(what: &str) -> bool {
+    let missing = missing();
+    if let Some(missing) = &missing {
+        build::skip(what, missing);
+    }
+    missing.is_some()
+}
+
+fn missing() -> Option<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     let chromium = env::var_os("CHROMIUM").unwrap_or(CHROMIUM.into());
     if !build::has_tool("node") {

@@ -61,8 +61,8 @@ fn missions_in_node_are_those_of_the_host() {
 
 #[test]
 fn missions_in_a_browser_are_those_of_the_host() {
-    if let Some(missing) = page::missing() {
-        return build::skip("the playground's module in a browser", &missing);
+    if page::lacks_browser("the playground's module in a browser") {
+        return;
     }
     compare("the playground's module in a browser", "in-browser");
 }
@@ -70,8 +70,8 @@ fn missions_in_a_browser_are_those_of_the_host() {
 #[test]
 fn the_page_works_by_mouse_finger_and_keys() {
     const WHAT: &str = "the playground's page in a browser";
-    if let Some(missing) = page::missing() {
-        return build::skip(WHAT, &missing);
+    if page::lacks_browser(WHAT) {
+        return;
     }
     let Some(file) = built(WHAT) else { return };
     node(&["playground.mjs".as_ref(), file, file.parent().expect("a folder")]);
@@ -81,8 +81,8 @@ fn the_page_works_by_mouse_finger_and_keys() {
 #[test]
 fn the_picture_of_the_docs_is_what_the_page_shows() {
     const WHAT: &str = "the picture of docs/try-it.md";
-    if let Some(missing) = page::missing() {
-        return build::skip(WHAT, &missing);
+    if page::lacks_browser(WHAT) {
+        return;
     }
     let Some(file) = built(WHAT) else { return };
     let drawn = file.with_file_name("try-it.svg");

@@ -42,9 +42,10 @@ impl Grid {
     /// nearest one.
     fn cell_at(&self, at: Point2<f64>) -> ([usize; 2], bool) {
         let [x, z] = [0, 1].map(|k| ((at[k] - self.corner[k]) / self.cell[k]).floor());
-        let nearest = |it: f64, count: usize| it.clamp(0.0, count as f64 - 1.0);
-        let cell = [nearest(x, self.columns), nearest(z, self.rows())];
-        (cell.map(|it| it as usize), cell == [x, z])
+        let count = [self.columns, self.rows()].map(|it| it as f64);
+        let is_inside = (0.0..count[0]).contains(&x) && (0.0..count[1]).contains(&z);
+        let nearest = |it: f64, count: f64| it.clamp(0.0, count - 1.0) as usize;
+        ([nearest(x, count[0]), nearest(z, count[1])], is_inside)
     }
 
     /// The same values drawn anew on a rectangle of another map; `source` brings its places to this one.

@@ -21,6 +21,7 @@ use crate::report::picture::Drawn;
 use crate::report::text;
 
 const TEMPLATE: &str = include_str!("page.html");
+const CONTROLS: &str = include_str!("controls.html");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: [&str; 4] = [
     include_str!("svg.js"),
@@ -69,6 +70,7 @@ impl Page {
             "chapters" => {
                 (0..).zip(&self.chapters).map(|(number, it)| chapter(number, it)).collect()
             }
+            "controls" => CONTROLS.trim_end().to_owned(),
             "data" => json(self),
             "script" => {
                 let live = self.live.as_ref().map(|_| LIVE_SCRIPT);

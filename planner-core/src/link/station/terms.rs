@@ -55,8 +55,8 @@ impl From<DeclinedError> for NoTerms {
     }
 }
 
-/// Kinds of area that a chip can plan in, of all that a setup can ask for: a rectangle ([`Area`]), a polygon with keep-outs
-/// ([`MissionArea`]), and, with the feature `charts`, a chart in such a polygon (`Charts`).
+/// Kinds of area that a chip can plan in, of all that a setup can ask for. They are a rectangle ([`Area`]) and a polygon with
+/// keep-outs ([`MissionArea`]). With the feature `charts` there is a chart in such a polygon (`Charts`).
 pub trait FromOutlines {
     /// What a chip stores of an area beside the planner: the cells of a chart, if it takes charts.
     type Room;

@@ -147,8 +147,8 @@ pub(crate) fn writes_to(file: &Path) -> [&str; 4] {
     ["-d", "unimp", "-D", file.to_str().expect("the path is UTF-8")]
 }
 
-/// Planner and drive on one chip, whose pin for the label is low wherever it goes: it finds the line that this machine
-/// finds, after as many labels, and then stands still.
+/// Planner and drive are on one chip, whose pin for the label is low wherever it goes. It finds the line that this machine
+/// finds, after as many labels. Then it stands still.
 #[test]
 fn a_robot_on_two_wheels_finds_a_line_without_a_link() -> Result<()> {
     let Some(board) = Board::start(WHEELS, &[]) else { return Ok(()) };
