@@ -34,8 +34,8 @@ fn main() -> ExitCode {
                 return ExitCode::FAILURE;
             }
         }
-        Err(word) => {
-            eprintln!("error: found {word}, expected --output FILE or nothing");
+        Err(why) => {
+            eprintln!("error: {why}");
             return ExitCode::from(2);
         }
     }
@@ -52,8 +52,24 @@ fn asked(words: &[OsString]) -> Result<Asked, String> {
     match words {
         [] => Ok(Asked::Serve),
         [help] if help == "--help" || help == "-h" => Ok(Asked::Help),
-        [output, file] if output == "--output" => Ok(Asked::Write(file.into())),
-        [word, ..] => Err(word.to_string_lossy().into_owned()),
+        [output, file] if output == "--output" => writable(file.into()).map(Asked::Write),
+        [word, ..] => {
+            Err(format!("found {}, expected --output FILE or nothing", word.to_string_lossy()))
+        }
+    }
+}
+
+/// A place where a file can be. It is looked at before the module is built, which takes minutes.
+fn writable(file: PathBuf) -> Result<PathBuf, String> {
+    let folder = file.parent().filter(|it| !it.as_os_str().is_empty());
+    match folder {
+        Some(folder) if !folder.is_dir() => {
+            Err(format!("--output: found no folder {}, expected one", folder.display()))
+        }
+        _ if file.is_dir() => {
+            Err(format!("--output: found the folder {}, expected a file", file.display()))
+        }
+        _ => Ok(file),
     }
 }
 
