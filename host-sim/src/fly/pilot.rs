@@ -47,7 +47,6 @@ pub struct Pilot {
     limits: Limits,
     vehicle: Vehicle,
     requests: Requests,
-    wants_origin: bool,
     stage: Stage,
     beat: Option<Duration>,
     slide: Slide,
@@ -67,7 +66,6 @@ impl Pilot {
         Self {
             system,
             requests: Requests::new(&labels.source),
-            wants_origin: false,
             labels,
             limits,
             vehicle: Vehicle::default(),
@@ -111,7 +109,6 @@ impl Pilot {
     /// Waits for where the vehicle's local frame lies on the globe too.
     pub(crate) fn wants_origin(&mut self) {
         self.requests.want(GPS_GLOBAL_ORIGIN_DATA::ID, GPS_GLOBAL_ORIGIN_DATA::NAME);
-        self.wants_origin = true;
     }
 
     /// The latitude and longitude that its positions count from, once they are known.

@@ -66,6 +66,11 @@ impl Requests {
         self.all.push(Request { id, name, is_needed: true });
     }
 
+    /// Whether this message is asked for.
+    pub fn has(&self, id: u32) -> bool {
+        self.all.iter().any(|it| it.id == id)
+    }
+
     /// The message whose request was never answered.
     pub fn missing(&self) -> Option<&'static str> {
         self.all.get(self.answered).filter(|_| !self.is_anew).map(|it| it.name)

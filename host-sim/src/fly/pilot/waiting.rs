@@ -2,6 +2,9 @@
 
 use std::time::Duration;
 
+use mavlink::MessageData as _;
+use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
+
 use crate::fly::failure::Failure;
 use crate::fly::pilot::Pilot;
 
@@ -14,7 +17,7 @@ impl Pilot {
                  station sets one (SET_GPS_GLOBAL_ORIGIN)"
                     .to_owned(),
             )
-        } else if self.wants_origin && self.vehicle.origin.is_none() {
+        } else if self.vehicle.origin.is_none() && self.requests.has(GPS_GLOBAL_ORIGIN_DATA::ID) {
             Some("where its local positions count from (GPS_GLOBAL_ORIGIN)".to_owned())
         } else if self.vehicle.facing.is_none() {
             Some("its attitude (ATTITUDE)".to_owned())
