@@ -42,7 +42,8 @@ impl OnMap {
         let start = results.start.pose;
         let ends = results.steps.iter().map(|step| Point2::new(step.pose.x, step.pose.z));
         let track = [Point2::new(start.x, start.z)].into_iter().chain(ends);
-        let given = results.start.oracle.iter().map(|it| (0, [it.x, it.z], it.label));
+        let given = results.start.oracle.iter().chain(&results.start.samples);
+        let given = given.map(|it| (0, [it.x, it.z], it.label));
         let read = results
             .steps
             .iter()

@@ -205,12 +205,13 @@ impl Picture {
         lines.extend(fewest.map(|line| Drawn::across(area, line, FEWEST, name)));
         // What each step read.
         let steps = (1..).zip(recording.steps.iter().zip(&results.steps));
-        let taken: Vec<(usize, Sample)> = steps
-            .flat_map(|(number, (step, result))| {
-                let end = step.reading.map(|reading| (step.pose.site, reading));
-                result.passed().chain(end).filter_map(move |it| Some((number, sample(it)?)))
-            })
-            .collect();
+        let of_steps = steps.flat_map(|(number, (step, result))| {
+            let end = step.reading.map(|reading| (step.pose.site, reading));
+            result.passed().chain(end).map(move |it| (number, it))
+        });
+        let before = mission.read_before.iter().map(|it| (0, *it));
+        let taken = before.chain(of_steps).filter_map(|(number, it)| Some((number, sample(it)?)));
+        let taken: Vec<(usize, Sample)> = taken.collect();
         let mut ahead = &taken[..];
         let mut number = |s: &Sample| {
             let k = ahead.iter().position(|(_, it)| it == s)?;

@@ -9,8 +9,8 @@ use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{ToleranceRecord, tidy};
 use crate::mission::from_nothing::SeekRecord;
 use crate::mission::results::{
-    AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results, Start,
-    StepResult,
+    AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results,
+    SampleRecord, Start, StepResult,
 };
 use crate::mission::stop::{AuditRecord, GoalRecord};
 use crate::mission::vehicle::VehicleTable;
@@ -390,13 +390,17 @@ fn possible(start: &Start) -> String {
     start.front.as_ref().map_or_else(slopes, |told| format!(".\n{}", front::told(told, radius)))
 }
 
-/// The oracle's points, and what is known of the line beside them: a line of text each.
+/// The oracle's points, what is known of the line beside them, and what others read before: a line of text each.
 pub(crate) fn given(start: &Start) -> String {
-    let points = start.oracle.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
-    let points = points.collect::<Vec<_>>().join(", ");
-    let points = (!points.is_empty()).then(|| format!("The oracle's points: {points}"));
+    let points = |what, samples: &[SampleRecord]| {
+        let points = samples.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
+        let points = points.collect::<Vec<_>>().join(", ");
+        (!points.is_empty()).then(|| format!("{what}: {points}"))
+    };
     let known = Some(known(start)).filter(|it| !it.is_empty());
-    points.into_iter().chain(known).collect::<Vec<_>>().join("\n")
+    let oracle = points("The oracle's points", &start.oracle).into_iter();
+    let before = points("Read before the first step", &start.samples);
+    oracle.chain(known).chain(before).collect::<Vec<_>>().join("\n")
 }
 
 /// What is known of the line beside the oracle's points, if anything.

@@ -122,6 +122,7 @@ pub fn stretched(
         start: Pose { site: oracle[0].site, heading },
         world: World::divided_by(truth),
         given: given.into(),
+        read_before: Vec::new(),
         noise: None,
         p_told: None,
         errors: Errors::default(),

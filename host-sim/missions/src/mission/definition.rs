@@ -6,7 +6,7 @@ use planner_core::link::message::MissionArea;
 use planner_core::link::message::Settings;
 use planner_core::{
     AnyReliability, AnySight, AnyVehicle, CellPosterior, Crossing, Following, Front, Goal, Noise,
-    NoisyBelief, Policy, Pose, Prior, Sample, Seeking, UnknownReliability,
+    NoisyBelief, Policy, Pose, Prior, Reading, Sample, Seeking, Site, UnknownReliability,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -65,6 +65,8 @@ pub struct Mission {
     pub given: Given,
     /// What is known of the line beside the oracle's points. Its samples are the last ones that are given.
     pub bounds: Bounds,
+    /// What an operator or another robot read before the first step. Planners weigh it as their own readings.
+    pub read_before: Vec<(Site, Reading)>,
     /// How labels are flipped; `None` when they are true.
     pub noise: Option<NoiseModel>,
     /// How often labels are true, as planners are told, if that is not the `p` of the noise.

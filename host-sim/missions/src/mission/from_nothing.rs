@@ -63,7 +63,11 @@ impl Mission {
 impl<D: Dynamics + 'static> FromNothing<D> {
     pub(crate) fn new(mission: &Mission, dynamics: D, on: fn(&Mission) -> AnyPlanner) -> Self {
         let seek = mission.seek(dynamics);
-        Self { mission: mission.clone(), seek, on, next: None }
+        let mut mission = mission.clone();
+        // What others read does not count as the mission's own.
+        let before = mission.read_before.len() as u32;
+        mission.asking.labels = mission.asking.labels.map(|it| it + before);
+        Self { mission, seek, on, next: None }
     }
 
     /// Hands over, if the boundary is found.

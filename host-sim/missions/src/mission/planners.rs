@@ -72,15 +72,48 @@ fn erased(
 }
 
 impl Mission {
-    /// The planner, as yet without a label.
+    /// The planner before the first step.
     ///
     /// # Panics
     /// When settings contradict each other. Reading scenario files and flags refuses such settings.
     pub fn planner(&self) -> AnyPlanner {
+        self.planner_told(&mut |_, _, _| ())
+    }
+
+    /// The same; `hear` is told each reading of others, and what was known before it.
+    pub(crate) fn planner_told(
+        &self,
+        hear: &mut dyn FnMut(&dyn ReadOut, Site, Reading),
+    ) -> AnyPlanner {
+        let mut planner = self.fresh_planner();
+        for &(site, reading) in &self.read_before {
+            hear(planner.belief(), site, reading);
+            let taken = planner.observe(Pose { site, ..self.start }, Some(reading));
+            taken.expect("readings that were tried");
+        }
+        planner
+    }
+
+    /// The same mission after readings of others, beside those that it has.
+    ///
+    /// # Errors
+    /// The number of a reading that contradicts what is known or finds no room, and why.
+    pub fn after(mut self, read: &[(Site, Reading)]) -> Result<Self, (usize, ObservationError)> {
+        let mut planner = self.planner();
+        for (k, &(site, reading)) in read.iter().enumerate() {
+            let taken = planner.observe(Pose { site, ..self.start }, Some(reading));
+            taken.map_err(|why| (k, why))?;
+        }
+        self.read_before.extend_from_slice(read);
+        Ok(self)
+    }
+
+    /// The planner without a label.
+    pub(crate) fn fresh_planner(&self) -> AnyPlanner {
         let (area, dynamics) = (self.terrain(), self.vehicle);
         match self.algorithm {
             _ if self.begins_from_nothing() && self.algorithm != Algorithm::Lawnmower => {
-                Box::new(FromNothing::new(self, dynamics, Self::planner))
+                Box::new(FromNothing::new(self, dynamics, Self::fresh_planner))
             }
             Algorithm::Cfc => erased(self.cfc(area, dynamics)),
             Algorithm::Scc => erased(self.scc(area, dynamics)),
@@ -106,11 +139,20 @@ impl Mission {
         }
     }
 
-    /// What is known before the first label.
+    /// What is known before the first step.
     ///
     /// # Panics
     /// As [`planner`](Self::planner).
     pub fn belief(&self) -> Box<dyn ReadOut> {
+        if self.read_before.is_empty() {
+            self.fresh_belief()
+        } else {
+            self.planner().belief().boxed()
+        }
+    }
+
+    /// What is known without a label.
+    pub(crate) fn fresh_belief(&self) -> Box<dyn ReadOut> {
         match () {
             () if !self.algorithm.seeks_line() => {
                 Box::new(self.track(self.terrain(), self.vehicle).belief().clone())
@@ -123,7 +165,10 @@ impl Mission {
 
     fn baseline(&self, strategy: impl Strategy<AnyVehicle> + Send + Sync + 'static) -> AnyPlanner {
         let (dynamics, area) = (self.vehicle, self.terrain());
-        Box::new(Baseline { strategy, ground: Ground { dynamics, area, belief: self.belief() } })
+        Box::new(Baseline {
+            strategy,
+            ground: Ground { dynamics, area, belief: self.fresh_belief() },
+        })
     }
 
     /// The follower of fronts with the mission's settings.

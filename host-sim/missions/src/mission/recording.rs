@@ -71,12 +71,13 @@ impl Recorder {
         let (steps, results, before) = (Vec::new(), Vec::new(), Vec::new());
         let evidence = Evidence::NONE;
         let (passed, width) = (Vec::new(), mission.found_width());
-        Self { mission, steps, results, before, belief, passed, evidence, alarm: None, width }
-    }
-
-    /// Says that something was known before the first step, beside what the scenario gives.
-    pub(crate) fn begin_with(&mut self, belief: &dyn ReadOut) {
-        self.belief = belief.boxed();
+        let read = (!mission.read_before.is_empty()).then(|| mission.clone());
+        let mut it =
+            Self { mission, steps, results, before, belief, passed, evidence, alarm: None, width };
+        if let Some(mission) = read {
+            mission.planner_told(&mut |known, site, reading| it.hear(known, site, reading));
+        }
+        it
     }
 
     /// Takes down what was read on the way of the step that comes next.
@@ -286,7 +287,7 @@ impl Recorder {
                 &mission,
                 &labels,
                 &after,
-                (&read(&results, &steps), has_ended(StopReason::OneLabel)),
+                (&read(&mission, &results, &steps), has_ended(StopReason::OneLabel)),
             ),
             goal: GoalRecord::of(&mission, &*belief, audit, is_alarmed),
             alarm,
@@ -336,7 +337,7 @@ impl Recording {
 }
 
 /// Why a sample is refused, in the words of scenario files.
-pub(crate) fn refusal(refused: &ObservationError) -> String {
+pub fn refusal(refused: &ObservationError) -> String {
     let ObservationError::Contradiction(sample) = refused else { return refused.to_string() };
     let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
     format!(
@@ -346,8 +347,8 @@ pub(crate) fn refusal(refused: &ObservationError) -> String {
     )
 }
 
-/// The labels of some steps, in order.
-fn read(results: &[StepResult], steps: &[Step]) -> Vec<Sample> {
+/// All labels, in order: those that were read before, and those of some steps.
+fn read(mission: &Mission, results: &[StepResult], steps: &[Step]) -> Vec<Sample> {
     let of_step = |(result, step): (&StepResult, &Step)| {
         let end = step.reading.map(|it| (step.pose.site, it));
         result.passed().chain(end).collect::<Vec<_>>()
@@ -356,7 +357,8 @@ fn read(results: &[StepResult], steps: &[Step]) -> Vec<Sample> {
         Reading::Side(label) => Some(Sample { site, label }),
         Reading::Boundary => None,
     };
-    results.iter().zip(steps).flat_map(of_step).filter_map(sample).collect()
+    let before = mission.read_before.iter().copied();
+    before.chain(results.iter().zip(steps).flat_map(of_step)).filter_map(sample).collect()
 }
 
 /// Estimates of a mission's line, each beside its world as that is at the time. Degrees are those to the true line, or to
@@ -382,6 +384,7 @@ impl Start {
             area: mission.config.area.into(),
             keep_out: mission.config.area.hulls().map(KeepOutRecord::from).collect(),
             oracle: mission.oracle().iter().map(Into::into).collect(),
+            samples: mission.read_before.iter().map(Into::into).collect(),
             bounds: (!mission.bounds.is_empty()).then_some(mission.bounds),
             vehicle: VehicleTable::of(mission.vehicle),
             tolerance: mission.tolerance_record(),

@@ -103,6 +103,9 @@ pub struct Start {
     pub keep_out: Vec<KeepOutRecord>,
     /// The oracle's samples.
     pub oracle: Vec<SampleRecord>,
+    /// What an operator or another robot read before the first step. It may be wrong as any label of the mission.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub samples: Vec<SampleRecord>,
     /// What is known of the line beside them, as in a scenario file.
     pub bounds: Option<Bounds>,
     /// What moved, with all keys of its kind in a scenario file, unless it is the unicycle of a fan.
@@ -381,7 +384,7 @@ pub struct SampleRecord {
     pub x: f64,
     /// Metres.
     pub z: f64,
-    /// -1 or 1.
+    /// -1 or 1; of `samples` 0 on the boundary too.
     pub label: i8,
 }
 
@@ -528,9 +531,15 @@ impl ReadingRecord {
 }
 
 impl From<&Sample> for SampleRecord {
-    fn from(sample: &Sample) -> Self {
-        let at = Point2::<f64>::from(sample.site);
-        Self { x: at.x, z: at.y, label: sample.label.sign() }
+    fn from(&Sample { site, label }: &Sample) -> Self {
+        (&(site, Reading::Side(label))).into()
+    }
+}
+
+impl From<&(Site, Reading)> for SampleRecord {
+    fn from(&(site, reading): &(Site, Reading)) -> Self {
+        let at = Point2::<f64>::from(site);
+        Self { x: at.x, z: at.y, label: reading.sign() }
     }
 }
 

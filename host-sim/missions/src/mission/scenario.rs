@@ -562,6 +562,7 @@ fn mission(file: &mut File, folder: &Path, overrides: Overrides<'_>) -> Result<M
         world,
         given,
         bounds,
+        read_before: Vec::new(),
         noise,
         p_told,
         errors,

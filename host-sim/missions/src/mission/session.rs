@@ -41,16 +41,10 @@ impl Session {
     /// # Errors
     /// Names the sample that contradicts what is known.
     pub fn new(mission: Mission, samples: &[(Site, Reading)]) -> Result<Self> {
-        let mut planner = mission.planner();
-        let mut recorder = Recorder::new(mission.clone());
-        for (k, &(site, reading)) in samples.iter().enumerate() {
-            let taken = planner.observe(Pose { site, ..mission.start }, Some(reading));
-            taken.map_err(|why| anyhow!("samples[{k}]: {}", refusal(&why)))?;
-        }
-        if !samples.is_empty() {
-            recorder.begin_with(planner.belief());
-        }
-        let pose = mission.start;
+        let mission = mission.after(samples);
+        let mission = mission.map_err(|(k, why)| anyhow!("samples[{k}]: {}", refusal(&why)))?;
+        let (planner, pose) = (mission.planner(), mission.start);
+        let recorder = Recorder::new(mission.clone());
         Ok(Self { mission, planner, recorder, pose, labels: 0, next: None })
     }
 

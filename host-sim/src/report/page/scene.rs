@@ -4,7 +4,7 @@ use std::iter;
 
 use nalgebra::{Point2, Vector2};
 use planner_core::dynamics::Dynamics as _;
-use planner_core::{AnyVehicle, Line, Sample, Site, Step};
+use planner_core::{AnyVehicle, Line, Site, Step};
 use serde::Serialize;
 
 use crate::mission::definition::Mission;
@@ -226,7 +226,9 @@ impl Flight {
         let area = mission.config.area;
         let border = Polygon::from(area);
         let rounding = Rounding::of(&border);
-        let given = |s: &Sample| (rounding.place(s.site.into()), s.label.sign());
+        let before = mission.read_before.iter().map(|(site, reading)| (*site, reading.sign()));
+        let given = mission.oracle().iter().map(|it| (it.site, it.label.sign())).chain(before);
+        let given = given.map(|(site, sign)| (rounding.place(site.into()), sign));
         let polygon = |it: Polygon| Polygon(rounding.way(it.0));
         let shores = mission.lake.iter().flat_map(|it| it.polygons.iter().flatten().cloned());
         Self {
@@ -236,7 +238,7 @@ impl Flight {
             follows: !mission.algorithm.seeks_line(),
             keep_outs: area.hulls().map(|hull| polygon(hull.into())).collect(),
             shores: shores.map(|it| polygon(Polygon(it))).collect(),
-            given: mission.oracle().iter().map(given).collect(),
+            given: given.collect(),
             truth: mission.world.line().map(|line| (*line).into()),
             boundary: boundary(mission, None),
             area: polygon(border),

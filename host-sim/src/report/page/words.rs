@@ -80,7 +80,7 @@ pub(crate) fn ended(results: &Results) -> impl Iterator<Item = Told> {
 
 /// What a mission is, before it begins, but the places: the map shows them.
 pub(crate) fn about(start: &Start) -> Vec<String> {
-    const PLACES: [&str; 2] = ["It starts at", "The oracle's points"];
+    const PLACES: [&str; 3] = ["It starts at", "The oracle's points", "Read before"];
     let beginning = text::beginning(start);
     let is_told = |it: &&str| !it.is_empty() && !PLACES.iter().any(|place| it.starts_with(place));
     beginning.lines().filter(is_told).map(minus).collect()
