@@ -9,7 +9,8 @@ SIMULATORS has `ardurover`, `ardusub` and `params/` with ArduPilot's parameters 
 `m.toml`; logs and the trace `t.jsonl` go there. Keys: `craft` (skid, car, boat, sub), `link` (udp, tcp, serial), `number`
 (below 256, apart from others that run beside it), `speedup`, `wind` (metres a second), `line` (slope and intercept: a Lua script on the
 vehicle tells its side as `WET`, by the position that it estimates), `is_true` (channel 7 of the remote control tells it instead, by
-the true position), `params`, `event` (see `happen`), `at` (metres from where it began) and `after` (seconds of the
+the true position), `params`, `by_hand` (drives of the operator before the flight, in MANUAL: steering and throttle in microseconds, and seconds,
+with a rest after each), `event` (see `happen`), `at` (metres from where it began) and `after` (seconds of the
 vehicle's clock). What came of it is a line of JSON.
 """
 
@@ -82,7 +83,7 @@ def bridge(port, name):
 class Operator:
     """Whoever stands beside the vehicle: a second ground station, of another number than ours."""
 
-    def __init__(self, port, line, remote):
+    def __init__(self, port, line, remote, is_true):
         self.state = {"n": 0.0, "e": 0.0, "v": 0.0, "ms": 0, "mode": None, "armed": False, "ekf": 0, "texts": []}
         self.link = None
         until = time.time() + 30
@@ -95,7 +96,7 @@ class Operator:
             raise SystemExit("the simulation does not open its second port")
         self.is_over, self.heard = False, set()
         # Where it truly began is the origin of its numbers, give or take what its receiver errs by.
-        self.line, self.remote, self.home = line, remote, (-35.363261, 149.165230)
+        self.line, self.remote, self.is_true, self.home = line, remote, is_true, (-35.363261, 149.165230)
         self.thread = threading.Thread(target=self.hear, daemon=True)
         self.thread.start()
 
@@ -114,12 +115,11 @@ class Operator:
                 state.update(mode=mavutil.mode_string_v10(it), armed=bool(it.base_mode & 128))
             elif kind == "LOCAL_POSITION_NED":
                 state.update(n=it.x, e=it.y, v=math.hypot(it.vx, it.vy), ms=it.time_boot_ms)
-            elif kind == "SIMSTATE" and self.remote:
+            elif kind == "SIMSTATE" and self.is_true:
                 north = (it.lat / 1e7 - self.home[0]) * 111319.5
                 east = (it.lng / 1e7 - self.home[1]) * 111319.5 * math.cos(math.radians(self.home[0]))
                 is_above = north > self.line[0] * east + self.line[1]
-                channels = [1500] * 6 + [1900 if is_above else 1100, 1800]
-                socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(struct.pack("<8H", *channels), self.remote)
+                self.move(1500, 1500, 1900 if is_above else 1100)
             elif kind == "EKF_STATUS_REPORT":
                 state["ekf"] = it.flags
             elif kind == "STATUSTEXT":
@@ -138,13 +138,29 @@ class Operator:
     def set(self, name, value):
         self.link.mav.param_set_send(1, 1, name.encode(), float(value), 9)
 
-    def ready(self, guided):
+    def move(self, steering, throttle, seventh=1100):
+        """The sticks of the remote control, microseconds."""
+        channels = [steering, 1500, throttle, 1500, 1500, 1500, seventh, 1800]
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(struct.pack("<8H", *channels), self.remote)
+
+    def drive(self, drives, guided):
+        """Drives by hand, and rests after each drive: seconds of the vehicle's clock."""
+        self.ready(0, "MANUAL")
+        for steering, throttle, seconds in [(1500, 1500, 0)] + drives:
+            for sticks, lasts in [((steering, throttle), seconds), ((1500, 1500), 5)]:
+                until = self.state["ms"] + 1e3 * lasts
+                while self.state["ms"] < until:
+                    self.move(*sticks)
+                    time.sleep(0.02)
+        self.ready(guided)
+
+    def ready(self, guided, mode="GUIDED"):
         until = time.time() + 60
         self.wait(lambda: self.state["ekf"] & 0x10, 60)
-        is_armed = lambda: self.state["armed"] and self.state["mode"] == "GUIDED"
+        is_armed = lambda: self.state["armed"] and self.state["mode"] == mode
         while not is_armed() and time.time() < until:
             self.link.set_mode(guided)
-            self.wait(lambda: self.state["mode"] == "GUIDED", 0.3)
+            self.wait(lambda: self.state["mode"] == mode, 0.3)
             self.command(400, 1)
             self.wait(is_armed, 0.7)
 
@@ -191,18 +207,21 @@ def main():
          "--serial1", "tcp:2"],
         cwd=folder, stdout=open(folder + "/vehicle.log", "w"), stderr=subprocess.STDOUT)
     try:
-        remote = ("127.0.0.1", 5501 + 10 * number) if flight.get("is_true") else None
-        operator = Operator(base + 2, flight["line"], remote)
+        is_true, drives = flight.get("is_true"), flight.get("by_hand")
+        operator = Operator(base + 2, flight["line"], ("127.0.0.1", 5501 + 10 * number), is_true)
         # Until it has heard of each: a position, the estimator's state, and where the vehicle truly is.
-        needs = {"LOCAL_POSITION_NED": 32, "EKF_STATUS_REPORT": 193, **({"SIMSTATE": 164} if remote else {})}
+        needs = {"LOCAL_POSITION_NED": 32, "EKF_STATUS_REPORT": 193, **({"SIMSTATE": 164} if is_true else {})}
         until = time.time() + 60
         while not needs.keys() <= operator.heard and time.time() < until:
             for kind in needs.keys() - operator.heard:
                 operator.command(511, needs[kind], 1e5)
             operator.wait(lambda: needs.keys() <= operator.heard, 0.5)
         fly = subprocess.Popen(
-            [program, "fly", "m.toml", "--mavlink", address, "--label", "channel:7" if remote else "WET", "--trace", "t.jsonl", "--wait", "90"],
+            [program, "fly", "m.toml", "--mavlink", address, "--label", "channel:7" if is_true else "WET", "--trace", "t.jsonl", "--wait", "90"]
+            + ["--by-hand"] * bool(drives),
             cwd=folder, stdout=open(folder + "/out.txt", "w"), stderr=open(folder + "/said.txt", "w"))
+        if drives:
+            operator.drive(drives, guided)
         operator.ready(guided)
         state, began, event = operator.state, time.time(), flight.get("event")
         from_there = (state["n"], state["e"])

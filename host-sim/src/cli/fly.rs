@@ -10,8 +10,9 @@ use planner_core::{AnyVehicle, Belief as _, Line};
 use crate::cli::done::Done;
 use crate::cli::help;
 use crate::cli::run::Run;
+use crate::fly::control::Control;
 use crate::fly::failure::Failure;
-use crate::fly::flight::{self, Control};
+use crate::fly::flight;
 use crate::fly::ideal::Ideal;
 use crate::fly::label::{LabelSource, Source};
 use crate::fly::limits::Limits;
@@ -44,6 +45,9 @@ pub(crate) struct FlyArgs {
     /// Who tells labels: the name of a named value, or channel:N of the remote control
     #[arg(long, value_name = "NAME|channel:N")]
     label: Source,
+    /// Take labels before the flight too: the operator drives, and each place where the vehicle rests gives one
+    #[arg(long, conflicts_with = "dry_run")]
+    by_hand: bool,
     /// A value above it is +1, any other -1 [default: 0, of channels 1500 us]
     #[arg(long, value_name = "VALUE")]
     threshold: Option<f64>,
@@ -79,7 +83,10 @@ pub(crate) fn fly(args: &FlyArgs) -> Result<Done> {
     let &FlyArgs { system, wait: ready, motion_time: motion, label_time: label, .. } = args;
     let tolerance = mission.position_tolerance();
     let limits = Limits { acceptance, tolerance, ready, motion, label };
-    let pilot = Pilot::new(system, labels.clone(), limits);
+    let mut pilot = Pilot::new(system, labels.clone(), limits);
+    if args.by_hand {
+        pilot = pilot.by_hand(shortest(&mission));
+    }
     let Some(address) = &args.mavlink else {
         let mission = sensed(mission, &run.name())?;
         let ideal = Ideal::new(&mission, system, labels);
@@ -152,6 +159,11 @@ fn threshold(value: Option<f64>) -> Result<Option<f64>> {
     }
 }
 
+/// The shortest motion, metres.
+fn shortest(mission: &Mission) -> f64 {
+    f64::from(mission.vehicle.grid().reach_mm(1)) / 1e3
+}
+
 /// How far off a vehicle may come to rest: what the scenario leaves room for.
 fn acceptance(mission: &Mission, asked: Option<f64>, name: &str) -> Result<f64> {
     if matches!(mission.vehicle, AnyVehicle::Car(_)) {
@@ -163,7 +175,7 @@ fn acceptance(mission: &Mission, asked: Option<f64>, name: &str) -> Result<f64> 
         let expected = "one above 0: a vehicle's local position is always off by something";
         return wrong("tolerance", "0 m", expected).with_context(|| name.to_owned());
     }
-    let shortest = f64::from(mission.vehicle.grid().reach_mm(1)) / 1e3;
+    let shortest = shortest(mission);
     let Some(asked) = asked else { return Ok(tolerance.min(shortest / 2.0)) };
     if !(asked > 0.0 && asked < shortest) {
         let expected = format!(

@@ -6,6 +6,8 @@
 //! known.
 
 pub mod autopilot;
+mod by_hand;
+pub mod control;
 pub mod failure;
 pub mod flight;
 pub mod frame;

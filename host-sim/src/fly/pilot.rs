@@ -21,6 +21,7 @@ use mavlink::dialects::common::{GPS_GLOBAL_ORIGIN_DATA, MavMessage};
 use mavlink::{MavHeader, MessageData as _};
 use planner_core::Label;
 
+use crate::fly::by_hand::{ByHand, ByHandNews};
 use crate::fly::failure::Failure;
 use crate::fly::frame::Ned;
 use crate::fly::label::LabelSource;
@@ -51,6 +52,9 @@ pub struct Pilot {
     beat: Option<Duration>,
     slide: Slide,
     on_the_way: OnTheWay,
+    /// An operator drives before the flight, and what came of it since this was asked last.
+    by_hand: Option<ByHand>,
+    news_by_hand: Vec<ByHandNews>,
     /// The depth that is kept: the one at the start.
     down: f32,
     failure: Option<Failure>,
@@ -73,11 +77,25 @@ impl Pilot {
             beat: None,
             slide: Slide::default(),
             on_the_way: OnTheWay::new(1),
+            by_hand: None,
+            news_by_hand: Vec::new(),
             down: 0.0,
             failure: None,
             ended: None,
             rests: false,
         }
+    }
+
+    /// Before the flight it takes labels where the vehicle rests, as its operator drives it. Two in a row are at least so
+    /// far apart, metres.
+    #[must_use]
+    pub fn by_hand(self, apart: f64) -> Self {
+        Self { by_hand: Some(ByHand::new(apart, self.limits.tolerance)), ..self }
+    }
+
+    /// What came of the operator's driving since this was asked last.
+    pub(crate) fn take_by_hand(&mut self) -> Vec<ByHandNews> {
+        std::mem::take(&mut self.news_by_hand)
     }
 
     /// Whether all is there that a flight needs.
@@ -186,8 +204,8 @@ impl Pilot {
 
     fn heed(&mut self, now: Duration, news: News) {
         match (self.stage, news) {
-            // Before the flight a fault is no failure: its end is waited for.
-            (Stage::Preparing { .. } | Stage::Listening { .. } | Stage::Over, _) => {}
+            (Stage::Preparing { complete, .. }, news) => self.attend(now, complete, news),
+            (Stage::Listening { .. } | Stage::Over, _) => {}
             (Stage::Stopping { .. }, News::Status(status))
                 if status.fault().is_some_and(|it| it.is_out_of_our_hands()) =>
             {

@@ -6,6 +6,7 @@ use planner_core::Label;
 
 use crate::fly::frame::Ned;
 use crate::fly::label::Told;
+use crate::fly::limits::{RESIGNED_MS, SLOW};
 use crate::fly::orders::Order;
 use crate::fly::vehicle::Fix;
 
@@ -58,6 +59,29 @@ pub(crate) struct Rest {
     pub place: Ned,
     /// It has been slow since then.
     pub slow: Option<u32>,
+}
+
+impl Rest {
+    /// How it rests by another position, if it may move by this much and still stay where it is.
+    pub(crate) fn by(before: Option<Self>, fix: Fix, most: f64) -> Self {
+        let (since, place) = (fix.at_ms, fix.at);
+        let mut rest = before.unwrap_or(Self { since, place, slow: None });
+        if place.distance(rest.place) > most {
+            rest = Self { since, place, ..rest };
+        }
+        rest.slow = rest.slow.or(Some(since)).filter(|_| fix.speed() <= SLOW);
+        rest
+    }
+
+    /// Whether it has been slow for this long, milliseconds.
+    pub(crate) fn is_calm(&self, fix: Fix, settles: u32) -> bool {
+        self.slow.is_some_and(|slow| fix.at_ms - slow >= settles)
+    }
+
+    /// Whether it has stayed for so long that it counts as at rest, though it never is.
+    pub(crate) const fn is_long(&self, fix: Fix) -> bool {
+        fix.at_ms - self.since >= RESIGNED_MS
+    }
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -9,8 +9,9 @@ use mavlink::dialects::common::{
     MavType, PositionTargetTypemask as Ignored,
 };
 
+use crate::fly::control::Control;
 use crate::fly::failure::Failure;
-use crate::fly::flight::{self, Control, Flight};
+use crate::fly::flight::{self, Flight};
 use crate::fly::frame::{self, Ned};
 use crate::fly::ideal::Ideal;
 use crate::fly::label::LabelSource;
@@ -24,6 +25,7 @@ use spoiled::{
     moves, of_run,
 };
 
+mod by_hand;
 mod endings;
 mod fronts;
 mod habits;

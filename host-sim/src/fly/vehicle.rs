@@ -11,7 +11,7 @@ use crate::fly::frame::{Ned, apart_on_globe};
 use crate::fly::label::{LabelSource, Told};
 
 /// A clock that goes back by more than this was started anew, milliseconds. No message is as late.
-const RESTART_MS: u32 = 10_000;
+pub(crate) const RESTART_MS: u32 = 10_000;
 
 /// Warnings that are kept.
 const MOST_WARNINGS: usize = 8;

@@ -43,17 +43,24 @@ struct Case {
     wind: f64,
     speedup: f64,
     is_true: bool,
+    /// Whether its operator drives first, and takes labels so.
+    is_by_hand: bool,
     /// What happens, what is told of it, the status, and how far the vehicle may go after the end, metres.
     fault: Option<(&'static str, &'static str, i32, f64)>,
 }
 
 const fn finishes(craft: &'static str, link: &'static str, wind: f64, speedup: f64) -> Case {
-    Case { craft, link, wind, speedup, is_true: false, fault: None }
+    Case { craft, link, wind, speedup, is_true: false, is_by_hand: false, fault: None }
 }
 
 /// Labels by the true position of a vehicle that goes by the estimated one.
 const fn finishes_by_truth(craft: &'static str, link: &'static str) -> Case {
     Case { is_true: true, ..finishes(craft, link, 0.0, 5.0) }
+}
+
+/// Three labels by hand first.
+const fn finishes_by_hand(craft: &'static str, link: &'static str) -> Case {
+    Case { is_by_hand: true, ..finishes(craft, link, 0.0, 4.0) }
 }
 
 const fn fails(
@@ -69,17 +76,19 @@ const fn fails(
         wind: 0.0,
         speedup: 2.0,
         is_true: false,
+        is_by_hand: false,
         fault: Some((event, told, status, after)),
     }
 }
 
 /// Rover and Sub first, which any long run flies. `LONG=1` flies all.
-const CASES: [Case; 11] = [
+const CASES: [Case; 12] = [
     finishes("sub", "udp", 0.0, 20.0),
     finishes("skid", "udp", 0.0, 20.0),
     finishes("boat", "serial", 5.0, 10.0),
     finishes("car", "tcp", 0.0, 10.0),
     finishes_by_truth("skid", "udp"),
+    finishes_by_hand("skid", "tcp"),
     fails(
         "udp",
         "hold",
@@ -123,10 +132,12 @@ impl Case {
         } else {
             json!({ "WP_RADIUS": 0.5 })
         };
+        let drives = json!([[1500, 1800, 6], [1700, 1500, 2], [1500, 1800, 6]]);
+        let drives = if self.is_by_hand { drives } else { json!([]) };
         let flight = json!({
             "craft": self.craft, "link": self.link, "number": number, "is_true": self.is_true,
             "speedup": self.speedup, "wind": self.wind, "line": [0.3, 5.0], "params": params,
-            "event": self.fault.map(|it| it.0), "at": 12, "after": 6,
+            "by_hand": drives, "event": self.fault.map(|it| it.0), "at": 12, "after": 6,
         });
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("ardupilot_flight.py");
         let output = Command::new("python3")
@@ -157,6 +168,9 @@ impl Case {
             let is_near = slope.is_some_and(|it| (it - TRUE_SLOPE).abs() <= SLOPE_WITHIN);
             check(is_near, format!("slope {slope:?}"));
             check(is_left(trace), "the true slope was ruled out".to_owned());
+            let by_hand = trace.lines().next().map_or(0, |it| it.matches("\"label\"").count() - 4);
+            let expected = if self.is_by_hand { 3 } else { 0 };
+            check(by_hand == expected, format!("{by_hand} labels by hand"));
             return faults;
         };
         check(came["happened"] == true, format!("{event} did not happen"));

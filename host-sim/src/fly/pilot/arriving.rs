@@ -68,16 +68,12 @@ impl Pilot {
             self.stage = Stage::Moving { motion, rest: None };
             return;
         }
-        let (since, place) = (fix.at_ms, fix.at);
-        let mut rest = rest.unwrap_or(Rest { since, place, slow: None });
-        if standing == Standing::Near && place.distance(rest.place) > WOBBLES {
-            rest = Rest { since, place, ..rest };
-        }
-        rest.slow = rest.slow.or(Some(since)).filter(|_| fix.speed() <= SLOW);
+        let most = if standing == Standing::Near { WOBBLES } else { f64::INFINITY };
+        let rest = Rest::by(rest, fix, most);
         self.stage = Stage::Moving { motion, rest: Some(rest) };
         let settles = if standing == Standing::There { SETTLED_MS } else { RESIGNED_MS };
-        let is_calm = rest.slow.is_some_and(|slow| fix.at_ms - slow >= settles);
-        let ends = is_calm || fix.at_ms - rest.since >= RESIGNED_MS;
+        let is_calm = rest.is_calm(fix, settles);
+        let ends = is_calm || rest.is_long(fix);
         let until = rest.slow.unwrap_or(rest.since);
         let Some(faces) = self.vehicle.facing.filter(|it| ends && it.at_ms >= until) else {
             return;

@@ -7,8 +7,29 @@ use mavlink::dialects::common::GPS_GLOBAL_ORIGIN_DATA;
 
 use crate::fly::failure::Failure;
 use crate::fly::pilot::Pilot;
+use crate::fly::stage::Stage;
+use crate::fly::vehicle::News;
 
 impl Pilot {
+    /// Before the flight a fault is no failure: its end is waited for. Where an operator drives, labels are taken.
+    pub(super) fn attend(&mut self, now: Duration, complete: Option<Duration>, news: News) {
+        if self.unheard(now).is_some() || self.requests.missing().is_some() {
+            return;
+        }
+        let Some(by_hand) = &mut self.by_hand else { return };
+        let came = match news {
+            News::Fix(fix) => by_hand.locate(fix),
+            News::Restart | News::Moved(_) => by_hand.moved(),
+            News::Label(told) => return by_hand.hear(told),
+            News::Status(_) | News::Breach | News::HeldBack => None,
+        };
+        if came.is_some() {
+            // The wait begins anew.
+            self.stage = Stage::Preparing { since: Some(now), complete };
+        }
+        self.news_by_hand.extend(came);
+    }
+
     /// The first needed message that was not heard, in words.
     pub(super) fn unheard(&self, now: Duration) -> Option<String> {
         if self.fix(now).is_none() {
@@ -43,6 +64,9 @@ impl Pilot {
             return Some(unheard);
         }
         match status.fault() {
+            Some(Failure::TakenOver(mode)) if self.by_hand.is_some() => Some(format!(
+                "mode GUIDED, it is in {mode}: until then a label is taken wherever it rests"
+            )),
             Some(Failure::TakenOver(mode)) => Some(format!("mode GUIDED, it is in {mode}")),
             Some(Failure::Restarted) => Some("its autopilot to have started".to_owned()),
             Some(Failure::Disarmed) => Some("its operator to arm it".to_owned()),

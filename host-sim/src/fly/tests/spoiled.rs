@@ -6,8 +6,9 @@ use anyhow::{Result, bail};
 use mavlink::MavHeader;
 use mavlink::dialects::common::{MavMessage, PositionTargetTypemask as Ignored};
 
+use crate::fly::control::Control;
 use crate::fly::failure::Failure;
-use crate::fly::flight::{self, Control, Flight};
+use crate::fly::flight::{self, Flight};
 use crate::fly::ideal::Ideal;
 use crate::fly::label::LabelSource;
 use crate::fly::limits::Limits;
@@ -120,15 +121,29 @@ pub(super) fn fly_with(
 
 pub(super) fn fly_mission(
     mission: Mission,
-    (there, back): (Spoil<'_>, Spoil<'_>),
+    spoil: (Spoil<'_>, Spoil<'_>),
     breaks_at: Option<Duration>,
     interrupted: fn() -> Option<i32>,
 ) -> Flown {
-    let labels = LabelSource::new("WET".parse().expect("a name"), None);
-    let ideal = Ideal::new(&mission, SYSTEM, labels.clone());
+    let control = |link| Control::new(link, Pilot::new(SYSTEM, wet(), LIMITS), interrupted);
+    fly_by(mission, spoil, breaks_at, control)
+}
+
+/// What tells labels.
+pub(super) fn wet() -> LabelSource {
+    LabelSource::new("WET".parse().expect("a name"), None)
+}
+
+pub(super) fn fly_by<'a>(
+    mission: Mission,
+    (there, back): (Spoil<'a>, Spoil<'a>),
+    breaks_at: Option<Duration>,
+    control: impl FnOnce(Spoiled<'a>) -> Control<Spoiled<'a>>,
+) -> Flown {
+    let ideal = Ideal::new(&mission, SYSTEM, wet());
     let waiting = Vec::new();
     let link = Spoiled { ideal, there, back, gone: [0; 2], waiting, breaks_at };
-    let mut control = Control::new(link, Pilot::new(SYSTEM, labels, LIMITS), interrupted);
+    let mut control = control(link);
     let flight = flight::fly(mission, &mut control);
     let link = control.link();
     Flown { flight, sent: link.ideal.sent().to_vec(), gone: link.gone }
