@@ -1,7 +1,7 @@
 //! Labels before the flight, while an operator drives from place to place.
 
 use nalgebra::Point2;
-use planner_core::{Reading, Site};
+use planner_core::Site;
 
 use super::spoiled::{fly_by, wet};
 use super::*;
@@ -58,7 +58,7 @@ impl Drive {
                 ([it.y, it.x], [it.vy, it.vx]) = (at, velocity);
             }
             MavMessage::NAMED_VALUE_FLOAT(it) => {
-                it.value = f32::from(world.reading(site(at)).sign())
+                it.value = f32::from(world.reading(site(at)).sign());
             }
             _ => {}
         }

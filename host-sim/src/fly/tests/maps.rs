@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::spoiled::{fly_by, wet};
 use super::*;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
@@ -69,4 +70,29 @@ fn the_place_that_it_counts_from_is_needed_and_stays() {
         *"its position slid by 11.1 m that "
     );
     ends_at_rest(&moved);
+}
+
+/// A label by hand lies where the vehicle truly is, whatever place it counts from.
+#[test]
+fn a_label_by_hand_has_its_place_on_the_map() {
+    let in_manual = |now, _, mut message| {
+        if let MavMessage::HEARTBEAT(it) = &mut message
+            && now < 2 * THEN
+        {
+            it.custom_mode = 0;
+        }
+        vec![message]
+    };
+    let flown = fly_by(a_line(), (Box::new(as_it_is), Box::new(in_manual)), None, |link| {
+        Control::new(link, Pilot::new(SYSTEM, wet(), LIMITS).by_hand(1.0), || None)
+    });
+    assert_eq!(flown.failure(), None);
+    let Ok(flight) = &flown.flight else { unreachable!() };
+    let start = &flight.recording.results.start;
+    let [read] = start.samples[..] else { panic!("{:?}", start.samples) };
+    let off = (read.x - start.pose.x).hypot(read.z - start.pose.z);
+    assert!(
+        off < 0.01 && read.label == a_line().world.reading(a_line().start.site).sign(),
+        "{read:?}"
+    );
 }
