@@ -128,7 +128,7 @@ impl<L: Link> Control<L> {
         let Some(site) = local.site(at) else { return Failure::LatticeError.to_string() };
         let (sign, place) = (label.sign(), place(mission, site));
         let mut take = || {
-            check_inside("it", site, &mission.terrain())?;
+            check_inside("its position", site, &mission.terrain())?;
             let read = mission.given.samples().len() + mission.read_before.len() + 1;
             let room = Room::of(mission.is_noisy(), &mission.asking, mission.audits);
             check_steps("steps", mission.steps, read, room)?;

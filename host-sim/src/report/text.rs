@@ -393,7 +393,8 @@ fn possible(start: &Start) -> String {
 /// The oracle's points, what is known of the line beside them, and what others read before: a line of text each.
 pub(crate) fn given(start: &Start) -> String {
     let points = |what, samples: &[SampleRecord]| {
-        let points = samples.iter().map(|s| format!("({}, {}) is {:+}", s.x, s.z, s.label));
+        let points = samples.iter();
+        let points = points.map(|s| format!("({}, {}) is {:+}", tidy(s.x), tidy(s.z), s.label));
         let points = points.collect::<Vec<_>>().join(", ");
         (!points.is_empty()).then(|| format!("{what}: {points}"))
     };

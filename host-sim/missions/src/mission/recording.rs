@@ -12,6 +12,7 @@ use planner_core::{
     ReliabilityEstimate, Sample, Site, Stage, Step, StopReason,
 };
 
+use crate::mission::allowance::tidy;
 use crate::mission::definition::{Mission, SoughtLine, Table};
 use crate::mission::diagnosis::DiagnosisRecord;
 use crate::mission::flight::Flown;
@@ -339,7 +340,7 @@ impl Recording {
 /// Why a sample is refused, in the words of scenario files.
 pub fn refusal(refused: &ObservationError) -> String {
     let ObservationError::Contradiction(sample) = refused else { return refused.to_string() };
-    let (at, label) = (Point2::<f64>::from(sample.site), sample.label.sign());
+    let (at, label) = (Point2::<f64>::from(sample.site).map(tidy), sample.label.sign());
     format!(
         "label {label} at ({}, {}) contradicts the region of certainty it lies in: `tolerance` allows for positions that \
          err, `noise` for labels that are wrong",
