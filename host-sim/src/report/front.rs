@@ -76,10 +76,7 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         let MapRecord { pieces, gaps, .. } = record;
         let _ = match pieces {
             1 => writeln!(text, "Between its ends {gaps:.0} m are not mapped."),
-            _ => writeln!(
-                text,
-                "It is in {pieces} pieces, with {gaps:.0} m between their ends in all."
-            ),
+            _ => writeln!(text, "It has {pieces} pieces: {gaps:.0} m between them are not mapped."),
         };
     }
     text.extend(half_width.map(within));
