@@ -16,6 +16,8 @@ import numpy as np
 import pytest
 import shapely
 from boundary_planner import BoundaryError, Flight, Mission
+from PIL import Image
+from PIL.TiffImagePlugin import ImageFileDirectory_v2
 
 LAKES = sorted((Path(__file__).parents[2] / "host-sim/scenarios/lakes").glob("*.geojson"))
 VEHICLES = [
@@ -95,8 +97,11 @@ def test_no_motion_leaves_the_water() -> None:
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("size", [200, 9])
 @pytest.mark.parametrize("system", [32635, 32634, 4326])
-def test_a_raster_lies_where_its_system_says(system: int, size: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["asc", "tif"])
+def test_a_raster_lies_where_its_system_says(kind: str, system: int, size: int, tmp_path: Path) -> None:
     """A spill as a grid of a map, by PROJ: UTM in its zone and beside it, and degrees; fine cells and coarse ones.
+
+    A GeoTIFF says its system itself.
 
     Each label is that of the cell that PROJ finds, unless the place lies within a seventh of a cell of another.
     """
@@ -112,7 +117,13 @@ def test_a_raster_lies_where_its_system_says(system: int, size: int, tmp_path: P
     rows = "\n".join(" ".join(map(str, row)) for row in inside)
     head = f"ncols {size}\nnrows {size}\nxllcorner {west!r}\nyllcorner {south!r}\ndx {dx!r}\ndy {dy!r}\n"
     (tmp_path / "spill.asc").write_text(head + rows)
-    crs = {} if system == 4326 else {"crs": f"EPSG:{system}"}
+    tags = ImageFileDirectory_v2()
+    tags[33550], tags[33922] = (dx, dy, 0.0), (0.0, 0.0, 0.0, west, north, 0.0)
+    tags.tagtype[33550] = tags.tagtype[33922] = 12
+    own = [1024, 0, 1, 2, 2048, 0, 1, 4326] if system == 4326 else [1024, 0, 1, 1, 3072, 0, 1, system]
+    tags[34735], tags.tagtype[34735] = (1, 1, 0, 2, *own), 3
+    Image.fromarray(inside.astype(np.uint8)).save(tmp_path / "spill.tif", tiffinfo=tags)
+    crs = {} if system == 4326 or kind == "tif" else {"crs": f"EPSG:{system}"}
     lake = next(it for it in LAKES if it.stem == "kyyvesi")
     flight = Mission(
         area={"geojson": str(lake)},
@@ -121,7 +132,7 @@ def test_a_raster_lies_where_its_system_says(system: int, size: int, tmp_path: P
         oracle=[],
         start={"lat": lat, "lon": lon},
         vehicle=VEHICLES[2],
-        truth={"raster": str(tmp_path / "spill.asc"), "threshold": 0.5, **crs},
+        truth={"raster": str(tmp_path / f"spill.{kind}"), "threshold": 0.5, **crs},
     ).run()
     labels = []
     for feature in flight.geojson()["features"]:

@@ -18,6 +18,8 @@ use crate::world::circle::Circle;
 use crate::world::crs::Crs;
 use crate::world::extent::around;
 use crate::world::files;
+use crate::world::frame::System;
+use crate::world::grid::Axes;
 use crate::world::moving::Moving;
 use crate::world::polygon::Polygon;
 use crate::world::polyline::Polyline;
@@ -57,7 +59,7 @@ pub(crate) struct TruthTable {
     raster: Option<String>,
     /// Of a raster
     threshold: Option<f64>,
-    /// Of a raster in an area from a map: the system of its metres, if it is not that of the area
+    /// Of a raster in an area from a map: the system of its metres, if it is neither told in the file nor that of the area
     crs: Option<String>,
     /// Polygons of a file beside the scenario, +1 inside, in the coordinates of the area
     geojson: Option<String>,
@@ -115,7 +117,7 @@ impl TruthTable {
                 );
             }
             let grid = raster_file::read(&path, rectangle);
-            let mut grid = grid.or_else(|why| wrong("truth.raster", name, why))?;
+            let (mut grid, own) = grid.or_else(|why| wrong("truth.raster", name, why))?;
             let is_placed = !name.to_ascii_lowercase().ends_with(".png");
             let map = lake.filter(|_| is_placed);
             if let (Some(crs), None) = (&self.crs, map) {
@@ -123,12 +125,13 @@ impl TruthTable {
                 return wrong("truth.crs", crs, expected);
             }
             if let Some(lake) = map {
-                let crs = self.crs.as_deref().map(str::parse::<Crs>).transpose();
-                let crs = crs.map_err(|error| anyhow!("truth.crs: {error}"))?;
+                let system = self.system(own)?;
                 let middle = grid.middle();
-                let drawn =
-                    grid.drawn_on(rectangle, |at| lake.frame.on_map(at, crs.as_ref(), middle));
+                let drawn = grid.drawn_on(rectangle, |at| lake.frame.on_map(at, &system, middle));
                 grid = drawn.or_else(|why| wrong("truth.raster", name, why))?;
+            } else if own == Some(Axes::Degrees) {
+                let found = format!("{name} in latitude and longitude");
+                return wrong("truth.raster", found, "metres, or an area from a map");
             } else if let Some([x, z]) = grid.brought_to(rectangle) {
                 mention(format_args!(
                     "truth.raster: {name} lies far off, so its corner ({x}, {z}) is put at that of the area"
@@ -154,6 +157,27 @@ impl TruthTable {
             return wrong("truth.drift", format!("{drift:?}"), expected);
         }
         Ok(World::divided_by_moving_curve(curve, &area, drift.into()))
+    }
+
+    /// What the coordinates of a raster are, by `crs` and by what its file says.
+    fn system(&self, own: Option<Axes>) -> Result<System> {
+        let own = own.map(|it| match it {
+            Axes::Degrees => Ok(System::Degrees),
+            Axes::Metres(code) => format!("EPSG:{code}").parse().map(System::Metres),
+        });
+        let Some(told) = &self.crs else {
+            return own.unwrap_or(Ok(System::OfMap)).map_err(|why| anyhow!("truth.raster: {why}"));
+        };
+        let told: Crs = told.parse().map_err(|error| anyhow!("truth.crs: {error}"))?;
+        match own {
+            Some(Ok(System::Degrees)) => {
+                wrong("truth.crs", told, "none, as the file is in latitude and longitude")
+            }
+            Some(Ok(System::Metres(own))) if own != told => {
+                wrong("truth.crs", told, format!("none, as the file says {own}"))
+            }
+            _ => Ok(System::Metres(told)),
+        }
     }
 
     /// Whether the keys describe one boundary.

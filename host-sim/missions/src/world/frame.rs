@@ -40,6 +40,17 @@ pub struct Frame {
     ellipsoid: Option<Geodesic>,
 }
 
+/// What coordinates are.
+#[derive(Clone, Debug)]
+pub enum System {
+    /// Those of the map.
+    OfMap,
+    /// Longitudes and latitudes of WGS84, degrees.
+    Degrees,
+    /// Metres of another system.
+    Metres(Crs),
+}
+
 impl Frame {
     /// The frame of some positions, about an origin if there is one.
     ///
@@ -134,25 +145,24 @@ impl Frame {
         self.site(self.crs.as_ref().map_or(Ok(degrees), |crs| crs.metres(degrees))?)
     }
 
-    /// A position in coordinates of the map, the first one to the east. They are metres of this system, if there is one. If not,
-    /// they are the frame's own: metres, or longitude and latitude, with longitudes counted from about `middle`.
+    /// A position in coordinates of a system, the first one to the east. Longitudes count from about `middle`.
     ///
     /// # Errors
     /// The system does not reach there.
     pub fn on_map(
         &self,
         at: Point2<f64>,
-        crs: Option<&Crs>,
+        system: &System,
         middle: Point2<f64>,
     ) -> Result<Point2<f64>> {
-        let exactly = self.exactly(at);
-        Ok(match crs {
-            None if self.is_geographic() => {
-                let east = libm::remainder(exactly[1] - middle.x, 360.0);
-                Point2::new(middle.x + east, exactly[0])
-            }
-            None => exactly.into(),
-            Some(crs) => crs.metres(self.on_globe(at)?)?.into(),
+        let degrees = |[lat, lon]: [f64; 2]| {
+            Point2::new(middle.x + libm::remainder(lon - middle.x, 360.0), lat)
+        };
+        Ok(match system {
+            System::OfMap if self.is_geographic() => degrees(self.exactly(at)),
+            System::OfMap => self.exactly(at).into(),
+            System::Degrees => degrees(self.on_globe(at)?),
+            System::Metres(crs) => crs.metres(self.on_globe(at)?)?.into(),
         })
     }
 

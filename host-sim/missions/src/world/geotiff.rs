@@ -9,28 +9,32 @@ use nalgebra::Point2;
 use tiff::decoder::{Decoder, DecodingResult};
 use tiff::tags::{PhotometricInterpretation, PlanarConfiguration, Tag};
 
-use crate::world::grid::{Grid, check_cells, check_size};
+use crate::world::grid::{Axes, Grid, check_cells, check_size};
 
 /// The directory of geographic keys has four numbers a key.
 const KEY: usize = 4;
 
-/// Reads a file.
+/// Latitudes and longitudes of WGS 84, ETRS89 and NAD83, which are two metres apart at most.
+const GLOBES: [u16; 3] = [4326, 4258, 4269];
+
+/// Reads a file, and what it says of its coordinates.
 ///
 /// # Errors
 /// What was found, and what was expected.
-pub fn read(file: impl Read + Seek) -> Result<Grid> {
+pub fn read(file: impl Read + Seek) -> Result<(Grid, Option<Axes>)> {
     let mut decoder = Decoder::new(file)?;
     let (width, height) = decoder.dimensions()?;
     let [columns, rows] = [width, height].map(|it| it as usize);
     check_cells(columns, rows)?;
     check_band(&mut decoder)?;
-    let (corner, cell) = frame(&mut decoder, rows)?;
+    let (is_of_points, axes) = keys(&mut decoder)?;
+    let (corner, cell) = frame(&mut decoder, rows, is_of_points)?;
     let missing = missing(&mut decoder)?;
     let values = values(decoder.read_image()?, missing);
     if values.len() != columns * rows {
         bail!("found {} values, expected {columns} x {rows}", values.len());
     }
-    Ok(Grid { corner, cell, columns, values })
+    Ok((Grid { corner, cell, columns, values }, axes))
 }
 
 /// The numbers of a tag; `None` if the file has none.
@@ -65,7 +69,11 @@ fn check_band<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<()> {
 }
 
 /// The corner with the least coordinates, and the size of a cell.
-fn frame<R: Read + Seek>(decoder: &mut Decoder<R>, rows: usize) -> Result<(Point2<f64>, [f64; 2])> {
+fn frame<R: Read + Seek>(
+    decoder: &mut Decoder<R>,
+    rows: usize,
+    is_of_points: bool,
+) -> Result<(Point2<f64>, [f64; 2])> {
     if decoder.find_tag(Tag::ModelTransformationTag)?.is_some() {
         bail!("found ModelTransformation (34264), expected a frame that is not rotated");
     }
@@ -82,7 +90,7 @@ fn frame<R: Read + Seek>(decoder: &mut Decoder<R>, rows: usize) -> Result<(Point
         bail!("found ModelTiepoint with {} numbers, expected one point, six numbers", ties.len());
     };
     // A point of the image is a cell's upper left corner, or its middle.
-    let middle = if is_of_points(decoder)? { 0.5 } else { 0.0 };
+    let middle = if is_of_points { 0.5 } else { 0.0 };
     let left = x - (column + middle) * width;
     let top = y + (row + middle) * height;
     let corner = Point2::new(left, top - rows as f64 * height);
@@ -92,29 +100,44 @@ fn frame<R: Read + Seek>(decoder: &mut Decoder<R>, rows: usize) -> Result<(Point
     Ok((corner, cell))
 }
 
-/// Whether places are those of the cells' middles, by the geographic keys. Coordinates must be metres.
-fn is_of_points<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<bool> {
+/// Whether places are those of the cells' middles, and what coordinates are, by the geographic keys.
+fn keys<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<(bool, Option<Axes>)> {
     const MODEL: u16 = 1024;
     const RASTER: u16 = 1025;
+    const GLOBE: u16 = 2048;
+    const ANGLES: u16 = 2054;
+    const DEGREE: u16 = 9102;
+    const SYSTEM: u16 = 3072;
     const UNITS: u16 = 3076;
     const METRE: u16 = 9001;
+    /// A system that has no number.
+    const OWN: u16 = 32767;
     let found = decoder.find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag)?;
     let directory = found.unwrap_or_default();
-    let mut is_of_points = false;
-    for key in directory.chunks_exact(KEY).skip(1) {
-        match *key {
-            // Stored in the directory itself.
-            [MODEL, 0, _, 2 | 3] => {
-                bail!("found latitude and longitude (GTModelType {}), expected metres", key[3])
+    // Those that are stored in the directory itself.
+    let key = |number| {
+        let mut all = directory.chunks_exact(KEY).skip(1);
+        all.find(|key| key[..2] == [number, 0]).map(|key| key[3])
+    };
+    let axes = match key(MODEL) {
+        Some(3) => bail!("found GTModelType 3, expected a map"),
+        Some(2) => {
+            let globe = key(GLOBE);
+            if !globe.is_some_and(|it| GLOBES.contains(&it)) {
+                let found = globe.map_or("none".to_owned(), |it| it.to_string());
+                bail!("found latitude and longitude of GeodeticCRS {found}, expected 4326, WGS 84");
             }
-            [RASTER, 0, _, kind] => is_of_points = kind == 2,
-            [UNITS, 0, _, unit] if unit != METRE => {
-                bail!("found ProjLinearUnits {unit}, expected {METRE}, metres")
+            if let Some(unit) = key(ANGLES).filter(|it| *it != DEGREE) {
+                bail!("found GeogAngularUnits {unit}, expected {DEGREE}, degrees");
             }
-            _ => {}
+            Some(Axes::Degrees)
         }
+        _ => key(SYSTEM).filter(|it| ![0, OWN].contains(it)).map(Axes::Metres),
+    };
+    if let Some(unit) = key(UNITS).filter(|it| *it != METRE) {
+        bail!("found ProjLinearUnits {unit}, expected {METRE}, metres");
     }
-    Ok(is_of_points)
+    Ok((key(RASTER) == Some(2), axes))
 }
 
 /// The value that stands for none.
@@ -213,7 +236,8 @@ mod tests {
     #[test]
     fn values_of_every_kind_are_read() {
         let tags = Tags { missing: Some("-9999"), ..PLAIN };
-        let grid = read(file::<GrayI16>(tags, &[1, 2, -9999, -4, 5, 6])).unwrap();
+        let (grid, axes) = read(file::<GrayI16>(tags, &[1, 2, -9999, -4, 5, 6])).unwrap();
+        assert_eq!(axes, None);
         assert_eq!(
             (grid.corner, grid.cell, grid.columns),
             (Point2::new(10.0, 11.0), [2.0, 3.0], 2)
@@ -228,24 +252,37 @@ mod tests {
         ] {
             // More digits than a value of 32 bits can have.
             let tags = Tags { missing: Some("-0.1"), compression, ..PLAIN };
-            let grid = read(file::<Gray32Float>(tags, &[0.5, 1.5, -0.1, 7.25])).unwrap();
+            let (grid, _) = read(file::<Gray32Float>(tags, &[0.5, 1.5, -0.1, 7.25])).unwrap();
             assert!(grid.values[2].is_nan());
             let others = [0, 1, 3].map(|k| grid.values[k].to_bits());
             assert_eq!(others, [0.5_f64, 1.5, 7.25].map(f64::to_bits));
         }
-        let grid = read(file::<Gray8>(PLAIN, &[0, 255, 3, 4])).unwrap();
+        let (grid, _) = read(file::<Gray8>(PLAIN, &[0, 255, 3, 4])).unwrap();
         assert_eq!(grid.values, [0.0, 255.0, 3.0, 4.0]);
     }
 
     #[test]
     fn the_frame_is_where_the_tags_say() {
-        let corner = |tags| read(file::<Gray8>(tags, &[1, 2, 3, 4])).unwrap().corner;
+        let corner = |tags| read(file::<Gray8>(tags, &[1, 2, 3, 4])).unwrap().0.corner;
         assert_eq!(corner(PLAIN), Point2::new(10.0, 14.0));
         // The same tie at another cell, and at the middle of a cell.
         let tie = Some(&[1.0, 2.0, 0.0, 12.0, 14.0, 0.0][..]);
         assert_eq!(corner(Tags { tie, ..PLAIN }), Point2::new(10.0, 14.0));
         let keys = &[1, 1, 0, 2, 1024, 0, 1, 1, 1025, 0, 1, 2][..];
         assert_eq!(corner(Tags { keys, ..PLAIN }), Point2::new(9.0, 15.5));
+    }
+
+    #[test]
+    fn a_file_says_what_its_coordinates_are() {
+        let axes = |keys: &[u16]| {
+            let keys = &[&[1, 1, 0, 1], keys].concat();
+            read(file::<Gray8>(Tags { keys, ..PLAIN }, &[1, 2, 3, 4])).unwrap().1
+        };
+        assert_eq!(axes(&[1024, 0, 1, 2, 2048, 0, 1, 4326]), Some(Axes::Degrees));
+        assert_eq!(axes(&[1024, 0, 1, 1, 3072, 0, 1, 32635]), Some(Axes::Metres(32635)));
+        // One of its own has no number.
+        assert_eq!(axes(&[1024, 0, 1, 1, 3072, 0, 1, 32767]), None);
+        assert_eq!(axes(&[1025, 0, 1, 1]), None);
     }
 
     #[test]
@@ -262,11 +299,15 @@ mod tests {
         let far = Some(&[0.0, 0.0, 0.0, 5e8, 5.8e9, 0.0][..]);
         refuses(Tags { tie: far, ..PLAIN }, "found its corner at (500000000, 5799999994)");
         refuses(Tags { missing: Some("none"), ..PLAIN }, "found GDAL_NODATA none");
-        refuses(
-            Tags { keys: &[1, 1, 0, 1, 1024, 0, 1, 2], ..PLAIN },
-            "found latitude and longitude",
-        );
-        refuses(Tags { keys: &[1, 1, 0, 1, 3076, 0, 1, 9002], ..PLAIN }, "ProjLinearUnits 9002");
+        for (keys, said) in [
+            (&[1024, 0, 1, 2][..], "GeodeticCRS none, expected 4326"),
+            (&[1024, 0, 1, 2, 2048, 0, 1, 4267], "GeodeticCRS 4267, expected 4326"),
+            (&[1024, 0, 1, 2, 2048, 0, 1, 4326, 2054, 0, 1, 9101], "GeogAngularUnits 9101"),
+            (&[1024, 0, 1, 3], "GTModelType 3"),
+            (&[3076, 0, 1, 9002], "ProjLinearUnits 9002"),
+        ] {
+            refuses(Tags { keys: &[&[1, 1, 0, 1], keys].concat(), ..PLAIN }, said);
+        }
         let error = read(file::<RGB8>(PLAIN, &[0; 12])).unwrap_err().to_string();
         assert_eq!(error, "found 3 bands, expected one");
         // JPEG, a compression that is not read.

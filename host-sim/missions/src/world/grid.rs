@@ -10,6 +10,15 @@ const MOST_CELLS: usize = 4_000_000;
 /// How far the lattice reaches, metres.
 const REACH: f64 = LIMIT as f64 / UNITS_PER_METRE as f64;
 
+/// What a file says that its coordinates are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axes {
+    /// Longitudes and latitudes, degrees.
+    Degrees,
+    /// Metres of the system with this number in the EPSG registry.
+    Metres(u16),
+}
+
 /// Values in cells.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {

@@ -11,16 +11,17 @@ use nalgebra::Point2;
 use png::{BitDepth, ColorType, Decoder, Transformations};
 
 use crate::world::files;
-use crate::world::grid::{Grid, check_cells};
+use crate::world::grid::{Axes, Grid, check_cells};
 
 /// The longest file, bytes.
 const MOST_BYTES: u64 = 1 << 27;
 
-/// Reads a file by the end of its name: `.png`, `.asc`, `.tif` or `.tiff`. An image is stretched over a rectangle.
+/// Reads a file by the end of its name: `.png`, `.asc`, `.tif` or `.tiff`. An image is stretched over a rectangle. Also
+/// what the file says of its coordinates.
 ///
 /// # Errors
 /// What was expected.
-pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
+pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<(Grid, Option<Axes>)> {
     let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
     let is_tiff = ending == "tif" || ending == "tiff";
     if !is_tiff && ending != "png" && ending != "asc" {
@@ -31,11 +32,13 @@ pub fn read(path: &Path, rectangle: [Point2<f64>; 2]) -> Result<Grid> {
     if ending == "asc" {
         let text = files::open(path).and_then(io::read_to_string);
         let text = text.map_err(|why| anyhow!("a text file: {why}"))?;
-        ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))
+        let grid = ascii(&text).map_err(|why| anyhow!("an ESRI ASCII grid: {why:#}"))?;
+        Ok((grid, None))
     } else if is_tiff {
         tiff(path).map_err(|why| anyhow!("a GeoTIFF: {why:#}"))
     } else {
-        image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))
+        let grid = image(path, rectangle).map_err(|why| anyhow!("a PNG image: {why:#}"))?;
+        Ok((grid, None))
     }
 }
 
@@ -45,19 +48,19 @@ use in_a_browser::{image, tiff};
 /// What reads these there would be a seventh of the page. The page itself brings images to a grid.
 #[cfg(target_family = "wasm")]
 mod in_a_browser {
-    use super::{Grid, Path, Point2, Result, bail};
+    use super::{Axes, Grid, Path, Point2, Result, bail};
 
-    pub(super) fn tiff(_: &Path) -> Result<Grid> {
+    pub(super) fn tiff(_: &Path) -> Result<(Grid, Option<Axes>)> {
         bail!("a browser reads none, but an ESRI ASCII grid (.asc)")
     }
 
     pub(super) fn image(path: &Path, _: [Point2<f64>; 2]) -> Result<Grid> {
-        tiff(path)
+        tiff(path).map(|it| it.0)
     }
 }
 
 #[cfg(not(target_family = "wasm"))]
-fn tiff(path: &Path) -> Result<Grid> {
+fn tiff(path: &Path) -> Result<(Grid, Option<Axes>)> {
     crate::world::geotiff::read(BufReader::new(files::open(path)?))
 }
 
