@@ -62,8 +62,11 @@ async function sees(page, step, steps, what) {
     const [{ flights: [flight], section }] = chapters;
     const marked = [...section.querySelectorAll('tr[aria-current=step]')].map((it) => it.rowIndex - 1);
     const rows = section.querySelectorAll('table.told tbody tr').length;
-    return { marked, rows, scenes: flight.scenes.length, words: section.querySelector('.words h4').textContent };
+    const drawn = section.querySelectorAll('.map > svg .truth').length;
+    const { length: expected } = flight.scenes[marked[0]].boundary ?? flight.boundary.flatMap((it) => it.ways);
+    return { marked, rows, drawn, expected, scenes: flight.scenes.length, words: section.querySelector('.words h4').textContent };
   });
+  check(found.drawn === found.expected, `${what}: ${found.drawn} of ${found.expected} parts of the true boundary`);
   check(found.rows === steps + 1 && found.scenes === steps + 1, `${what}: ${found.rows} rows, ${found.scenes} scenes`);
   check(String(found.marked) === String(step), `${what}: the table marks ${found.marked}`);
   check(found.words === (step === 0 ? 'Start' : `Step ${step}`), `${what}: the words are of ${found.words}`);

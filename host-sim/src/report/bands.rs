@@ -185,7 +185,7 @@ fn straightened(ring: Vec<[f64; 2]>, detail: f64) -> Vec<Point2<f64>> {
 
 /// A line of places without those that are nearer than this to the straight line between the ones that stay
 /// (Douglas and Peucker's).
-fn simplified(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
+pub(crate) fn simplified(line: &[Point2<f64>], detail: f64) -> Vec<Point2<f64>> {
     let (Some(&from), Some(&to)) = (line.first(), line.last()) else { return Vec::new() };
     let way = to - from;
     let off = |at: &Point2<f64>| {

@@ -132,7 +132,8 @@ impl Drawn {
     }
 }
 
-/// The boundary of a mission's world: if it moves, at the start, and at the end after so many motions.
+/// The boundary of a mission's world. One that moves is drawn twice: at the start, and at the end after so many motions.
+/// Without a number of motions the second has a name but no ways: each scene has them.
 pub(crate) fn truth(mission: &Mission, motions: Option<usize>) -> Vec<Drawn> {
     let (world, area) = (&mission.world, &mission.config.area);
     let there = if mission.algorithm.seeks_line() { TRUTH } else { TRUE_FRONT };
@@ -150,8 +151,9 @@ pub(crate) fn truth(mission: &Mission, motions: Option<usize>) -> Vec<Drawn> {
     if !world.moves() {
         return vec![at(0, "", there)];
     }
-    let end = motions.map(|motions| at(motions, " at the end", there));
-    [at(0, " at the start", PAST_TRUTH)].into_iter().chain(end).collect()
+    let now = || Drawn::new(format!("{what} at this step"), there, Vec::new());
+    let second = motions.map_or_else(now, |motions| at(motions, " at the end", there));
+    vec![at(0, " at the start", PAST_TRUTH), second]
 }
 
 impl Picture {

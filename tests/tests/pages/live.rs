@@ -30,6 +30,13 @@ fn a_spill_in_a_browser() {
     look_at("spill", include_str!("../../../host-sim/scenarios/begin-spill.toml"));
 }
 
+#[test]
+fn a_front_that_moves_away_in_a_browser() {
+    // It moves ten times as fast as the planner is told, so the robot loses it.
+    let text = include_str!("../../../host-sim/scenarios/moving-front.toml");
+    look_at("lost", &text.replace("drift = [0.0, 0.05]", "drift = [0.0, 0.5]"));
+}
+
 fn look_at(name: &str, text: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     if lacks_browser("pages in a browser") {

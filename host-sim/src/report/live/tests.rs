@@ -1,5 +1,6 @@
 //! A mission and its viewers, by plain connections.
 
+use std::collections::HashSet;
 use std::io::{self, Read as _, Write as _};
 use std::net::TcpStream;
 use std::path::Path;
@@ -107,12 +108,21 @@ fn what_is_streamed_is_what_the_report_has() {
             "{name}: rows"
         );
         assert_eq!(end.1, "end");
-        let (ended, boundary) = end.2[0].split_once(",\"boundary\":").unwrap();
-        assert!(report.contains(ended.trim_start_matches('{')), "{name}: {ended}");
-        assert!(
-            report.contains(&format!("\"boundary\":{}", boundary.trim_end_matches('}'))),
-            "{name}"
-        );
+        let ended = end.2[0].trim_matches(['{', '}']);
+        assert!(report.contains(ended), "{name}: {ended}");
+        // All but what the scenes show is there from the start, and they show what moves.
+        let begun = |html: &str| {
+            let (_, flight) = html.split_once("\"flights\":").expect("a mission");
+            flight.split_once(",\"scenes\":").expect("scenes").0.to_owned()
+        };
+        assert_eq!(begun(&page), begun(&report), "{name}");
+        let boundary = |scene: &str| {
+            let (_, after) = scene.split_once(",\"boundary\":")?;
+            after.split_once(",\"slopes\":").map(|it| it.0.to_owned())
+        };
+        let shown: HashSet<_> = part(0).iter().filter_map(|it| boundary(it)).collect();
+        let expected = if mission.world.moves() { scenes.len() } else { 0 };
+        assert_eq!(shown.len(), expected, "{name}: where the boundary was");
         assert!(page.contains(&format!("\"scenes\":[{}]", part(0)[0])), "{name}: the page");
         assert!(page.contains("connect-src 'self'") && !report.contains("connect-src"));
         assert!(!report.contains("EventSource"), "a report asks for nothing");

@@ -17,6 +17,7 @@ use crate::report::ground::Ground;
 use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
 use crate::report::page::scene::{Flight, Scene, SeenFront};
 use crate::report::style::{self, ESTIMATE, FRONT, KEEP_OUT, PATH, SHADES, Stroke};
+use crate::world::way::Way;
 
 /// Pixels.
 const THIN: f64 = 1.0;
@@ -35,13 +36,11 @@ pub(super) fn begin(flight: &Flight) -> SceneUpdate {
         SceneEntity { lines: vec![border], triangles: keep_outs.collect(), ..entity("area", 0) },
         samples("given", 0, flight.given.iter().copied(), 1.5 * size),
     ];
-    for it in &flight.boundary {
-        let lines = it.ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
-        entities.push(SceneEntity { lines: lines.collect(), ..entity(&it.name, 0) });
-    }
+    let still = flight.boundary.iter().filter(|it| !it.ways.is_empty());
+    entities.extend(still.map(|it| truth(&it.name, &it.ways, 0)));
     entities.extend(names(flight).flat_map(|part| grown(part, flight, &(0..0), 0)));
     if let Some(scene) = flight.scenes.first() {
-        entities.extend(known(scene, 0));
+        entities.extend(seen(flight, scene, 0));
     }
     SceneUpdate { entities, ..SceneUpdate::default() }
 }
@@ -85,7 +84,7 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
     (1..).zip(flight.scenes.iter().skip(1)).map(move |(second, scene)| {
         let parts = parts(second as usize);
         let grown = parts.flat_map(|(part, steps)| grown(part, flight, &steps, second));
-        let entities = grown.chain(known(scene, second)).collect();
+        let entities = grown.chain(seen(flight, scene, second)).collect();
         SceneUpdate { entities, ..SceneUpdate::default() }
     })
 }
@@ -132,6 +131,18 @@ fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scen
         })
     });
     SceneEntity { lines: lines.collect(), ..entity(&format!("{part}front"), second) }
+}
+
+/// What each step replaces: what is known, and the true boundary if it moves.
+fn seen(flight: &Flight, scene: &Scene, second: u32) -> impl Iterator<Item = SceneEntity> {
+    let now = flight.boundary.last().zip(scene.boundary.as_ref());
+    known(scene, second).into_iter().chain(now.map(|(it, ways)| truth(&it.name, ways, second)))
+}
+
+/// The true boundary.
+fn truth(name: &str, ways: &[Way], second: u32) -> SceneEntity {
+    let lines = ways.iter().map(|way| line(way, false, THICK, opaque(TRUTH)));
+    SceneEntity { lines: lines.collect(), ..entity(name, second) }
 }
 
 /// What is known: the ground and the estimate.

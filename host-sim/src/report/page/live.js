@@ -40,7 +40,7 @@ function takeIn() {
     rows.insertAdjacentHTML('beforeend', `${row}\n`);
   }
   if (end !== null) {
-    Object.assign(flown, { ended: end.ended, boundary: end.boundary ?? flown.boundary, isGrowing: false, shown: undefined });
+    Object.assign(flown, { ended: end.ended, isGrowing: false, shown: undefined });
     said.state = 'ended';
   }
   shownLive.renew();

@@ -81,7 +81,7 @@ function drawMap(svg, flight, step, width, from) {
   if (shores.length > 0) add(svg, 'path', { class: 'keep-out', 'fill-rule': 'evenodd', d: [flight.area, ...shores].map(ring).join('') });
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
   add(svg, 'path', { class: 'border', d: ring(flight.area) });
-  if (!flight.follows) drawTruth(svg, flight, at);
+  if (!flight.follows) drawTruth(svg, flight, scene, at);
   if (scene.estimate) add(svg, 'path', { class: 'estimate', d: through(scene.estimate.ends.map(at)) });
 
   // Along a front labels lie close together: small, few, and below the path and the map, which they must not hide.
@@ -101,15 +101,16 @@ function drawMap(svg, flight, step, width, from) {
   }
   if (!flight.follows) drawMarks(svg, past, at, false);
   for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
-  if (flight.follows) drawTruth(svg, flight, at);
+  if (flight.follows) drawTruth(svg, flight, scene, at);
   drawRobot(svg, flight, step, at, from);
   if (isPart) drawInset(sheet, flight, view);
 }
 
-function drawTruth(svg, flight, at) {
-  for (const { ways, stroke } of flight.boundary) {
-    for (const way of ways) add(svg, 'path', { class: stroke.class, d: through(way.map(at)) });
-  }
+/** The true boundary. If it moves, the scene has where it is. */
+function drawTruth(svg, { boundary }, scene, at) {
+  const draw = (ways, { stroke }) => ways.forEach((way) => add(svg, 'path', { class: stroke.class, d: through(way.map(at)) }));
+  for (const it of boundary) draw(it.ways, it);
+  if (scene.boundary) draw(scene.boundary, boundary.at(-1));
 }
 
 /** What was read. Of a front one mark of a kind in each cell of some pixels is enough. */

@@ -17,7 +17,6 @@ use crate::mission::recording::Recording;
 use crate::mission::results::Start;
 use crate::report::page::scene::{Flight, Moved, Scene};
 use crate::report::page::words::{Told, minus, signed, small};
-use crate::report::picture::Drawn;
 use crate::report::text;
 
 const TEMPLATE: &str = include_str!("page.html");
@@ -143,23 +142,20 @@ fn escaped(text: &str) -> String {
     safe
 }
 
-/// What comes last on a live page: why the mission ended, and what is known only then.
+/// What comes last on a live page: why the mission ended.
 #[derive(Debug, Serialize)]
 pub(crate) struct End {
     ended: Vec<Told>,
-    boundary: Option<Vec<Drawn>>,
 }
 
 impl End {
     pub(crate) fn of(recording: &Recording) -> Self {
-        let Recording { mission, results, steps, .. } = recording;
-        let ended = words::ended(results).collect();
-        Self { ended, boundary: Some(scene::boundary(mission, Some(steps.len()))) }
+        Self { ended: words::ended(&recording.results).collect() }
     }
 
     /// Of a mission that came to nothing.
     pub(crate) fn broken_off(why: &str) -> Self {
-        Self { ended: vec![Told::new("Ended", format!("{why}."))], boundary: None }
+        Self { ended: vec![Told::new("Ended", format!("{why}."))] }
     }
 
     /// As JSON, in one line.

@@ -12,6 +12,7 @@ use crate::mission::front::VertexRecord;
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, PoseRecord, Start, StepResult};
+use crate::report::bands::simplified;
 use crate::report::examples::bits;
 use crate::report::ground::Ground;
 use crate::report::page::words::{self, Told};
@@ -48,7 +49,7 @@ pub(crate) struct Flight {
     pub(crate) given: Vec<(Point2<f64>, i8)>,
     /// The true line, where there is one.
     truth: Option<LineRecord>,
-    /// The true boundary, where known.
+    /// The true boundary, where known. If it moves, the last has no ways: each scene has them.
     pub(crate) boundary: Vec<Drawn>,
     /// The start, and each step.
     pub(crate) scenes: Vec<Scene>,
@@ -89,6 +90,9 @@ pub(crate) struct Scene {
     pub(crate) estimate: Option<SeenLine>,
     /// Where the front is known best, if one is followed and found.
     pub(crate) front: Option<SeenFront>,
+    /// Where the true boundary is after this step, if it moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) boundary: Option<Vec<Way>>,
     /// The slopes left, as intervals of degrees.
     pub(crate) slopes: Vec<[f64; 2]>,
     /// The intercepts left, metres; `None` when unbounded.
@@ -186,6 +190,12 @@ impl Rounding {
         Drawn { ways: it.ways.into_iter().map(|way| self.way(way)).collect(), ..it }
     }
 
+    /// A boundary that moves, as it is now, to a fifth of a pixel: each scene has it, so it must be short.
+    fn boundary(self, world: &World, border: &Polygon) -> Option<Vec<Way>> {
+        let short = |way: Way| self.way(simplified(&way, 4.0 * self.unit));
+        world.moves().then(|| world.ways(border).into_iter().map(short).collect())
+    }
+
     fn front(self, step: &StepResult, world: &World) -> Option<SeenFront> {
         let vertex = step.front.as_ref()?;
         let off = || Some(world.distance(Site::try_from(vertex.at()).ok()?).abs());
@@ -215,7 +225,6 @@ impl Flight {
         Self {
             scenes,
             ended: words::ended(results).collect(),
-            boundary: boundary(mission, Some(steps.len())),
             picture: Some(picture),
             ..Self::begun(planner, mission)
         }
@@ -230,6 +239,7 @@ impl Flight {
         let given = mission.oracle().iter().map(|it| (it.site, it.label.sign())).chain(before);
         let given = given.map(|(site, sign)| (rounding.place(site.into()), sign));
         let polygon = |it: Polygon| Polygon(rounding.way(it.0));
+        let boundary = picture::truth(mission, None).into_iter();
         let shores = mission.lake.iter().flat_map(|it| it.polygons.iter().flatten().cloned());
         Self {
             planner: planner.to_owned(),
@@ -240,19 +250,13 @@ impl Flight {
             shores: shores.map(|it| polygon(Polygon(it))).collect(),
             given: given.collect(),
             truth: mission.world.line().map(|line| (*line).into()),
-            boundary: boundary(mission, None),
+            boundary: boundary.map(|it| rounding.drawn(it)).collect(),
             area: polygon(border),
             scenes: Vec::new(),
             ended: Vec::new(),
             picture: None,
         }
     }
-}
-
-/// The true boundary as a page draws it: where it moves, at the start, and at the end after so many motions.
-pub(crate) fn boundary(mission: &Mission, motions: Option<usize>) -> Vec<Drawn> {
-    let rounding = Rounding::of(&mission.config.area.into());
-    picture::truth(mission, motions).into_iter().map(|it| rounding.drawn(it)).collect()
 }
 
 /// Makes the scenes of a mission, one after the other, from what has happened so far. So a report and a page that shows
@@ -316,6 +320,7 @@ impl Scenes {
             ground: rounding.ground(Ground::of(belief, area)),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
             front: step.filter(|_| is_beside).and_then(|step| rounding.front(step, &world)),
+            boundary: rounding.boundary(&world, &area.into()),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
             bits,
