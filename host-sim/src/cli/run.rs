@@ -65,7 +65,7 @@ pub(crate) struct Run {
     /// The same as tracks and waypoints, for chart plotters and phones
     #[arg(long, value_name = "FILE.gpx")]
     pub(crate) gpx: Option<PathBuf>,
-    /// Serve the page while the mission is flown, here or at HOST:PORT; port 0 takes any [default: 127.0.0.1:8043]
+    /// Serve the page while the mission is flown, here or at [HOST:]PORT; port 0 takes any [default: 127.0.0.1:8043]
     #[arg(
         long,
         value_name = "ADDRESS",

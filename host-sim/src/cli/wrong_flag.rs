@@ -4,8 +4,8 @@ use std::env;
 use std::error::Error as _;
 
 use anyhow::{Error, anyhow};
+use clap::CommandFactory as _;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{Arg, CommandFactory as _};
 
 use crate::cli::arguments::Cli;
 use crate::mission::wording::expected;
@@ -63,8 +63,7 @@ fn message(error: &clap::Error) -> Error {
             }
         }
         ErrorKind::UnknownArgument => {
-            let glued = before(&argument).map(|flag| format!("{flag}={argument}, or "));
-            let glued = glued.unwrap_or_default();
+            let glued = glued().map(|it| format!("{it}, or ")).unwrap_or_default();
             anyhow!("{argument}: found an argument too many, expected {glued}{usage}")
         }
         ErrorKind::InvalidSubcommand => {
@@ -94,14 +93,19 @@ fn message(error: &clap::Error) -> Error {
     }
 }
 
-/// The flag before an argument of this program, if it takes a value behind an equals sign alone.
-fn before(argument: &str) -> Option<String> {
-    let all: Vec<_> = env::args().collect();
-    let before = all.windows(2).find(|pair| pair[1] == argument)?[0].clone();
-    let long = before.strip_prefix("--")?;
-    let takes_it = |it: &Arg| it.get_long() == Some(long) && it.is_require_equals_set();
-    let cli = Cli::command();
-    cli.get_subcommands().any(|it| it.get_arguments().any(takes_it)).then_some(before)
+/// A flag and the word behind it, if all they lack to be understood is an equals sign between them.
+fn glued() -> Option<String> {
+    let all: Vec<_> = env::args_os().collect();
+    (2..all.len()).find_map(|k| {
+        let mut words = all.clone();
+        let value = words.remove(k);
+        let flag = &mut words[k - 1];
+        flag.push("=");
+        flag.push(value);
+        let glued = flag.to_string_lossy().into_owned();
+        let is_flag = glued.starts_with("--");
+        (is_flag && Cli::command().try_get_matches_from(words).is_ok()).then_some(glued)
+    })
 }
 
 /// What a flag expects, by the name of its value.

@@ -7,7 +7,10 @@ use std::str::FromStr;
 
 use anyhow::{Context as _, Error, Result, anyhow};
 
-/// Where a page is served if nobody names a place: this machine alone reaches it.
+/// The host if none is named: this machine alone reaches it.
+const HERE: &str = "127.0.0.1";
+
+/// Where a page is served if nobody names a place.
 pub(crate) const USUAL: &str = "127.0.0.1:8043";
 
 /// A host and a port, 0 for any that is free.
@@ -23,8 +26,8 @@ impl FromStr for Address {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self> {
-        let expected = || anyhow!("expected HOST:PORT, as {USUAL}");
-        let (host, port) = text.rsplit_once(':').with_context(expected)?;
+        let expected = || anyhow!("expected a port or HOST:PORT, as {USUAL} or [::1]:8043");
+        let (host, port) = text.rsplit_once(':').unwrap_or((HERE, text));
         let port = port.parse().ok().with_context(expected)?;
         let in_brackets = host.strip_prefix('[').and_then(|it| it.strip_suffix(']'));
         let is_host = match in_brackets {
@@ -69,15 +72,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_address_is_a_host_and_a_port() {
+    fn an_address_is_a_port_or_a_host_and_a_port() {
         for sound in ["127.0.0.1:8043", "localhost:0", "[::1]:80", "boat-2.local:9000"] {
             assert_eq!(sound.parse::<Address>().unwrap().to_string(), sound);
         }
+        assert_eq!("8043".parse::<Address>().unwrap().to_string(), USUAL);
         for wrong in [
             "",
             "nonsense",
-            "8043",
+            "70000",
             ":8043",
+            "127.0.0.1",
+            "::1",
+            "[::1]",
             "host:",
             "host:70000",
             "::1:80",
