@@ -29,7 +29,7 @@ pub(crate) fn told(&FrontTable { speed, watch, .. }: &FrontTable, circle: Option
 /// What is known of the front after each step: where it was known best, and within how much it lies there.
 pub(crate) const KNOWN: [Cells<'static, StepResult>; 4] = [
     (Column::left("front at m", 18).apart(), &|it| {
-        it.front.map_or("not found".into(), |it| format!("({:.2}, {:.2})", it.x, it.z))
+        it.front.map_or("not known".into(), |it| format!("({:.2}, {:.2})", it.x, it.z))
     }),
     (Column::right("within m", 8), &|it| {
         it.front.map_or(String::new(), |it| format!("{:.2}", it.half_width))

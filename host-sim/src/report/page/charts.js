@@ -10,7 +10,7 @@ const CHARTS = [
     isLogarithmic: true,
     line: (scene) => scene.front?.half_width,
     dashed: (scene) => scene.front?.off,
-    told: ({ front }) => (front ? [front.half_width, front.off].filter((it) => it != null).map(small).join('; ') : 'not found'),
+    told: ({ front }) => (front ? [front.half_width, front.off].filter((it) => it != null).map(small).join('; ') : 'not known'),
   },
   {
     of: false,
@@ -113,7 +113,9 @@ function drawChart(svg, chart, flight, step, range, steps, width) {
       const value = scaled(chart, of(scene));
       return value == null ? [] : [{ number, pixel: [across(number), up(value)] }];
     });
-    const pixels = (those) => through(those.map((it) => it.pixel));
+    // It has a gap where there is no value. Of length 0, a value between two gaps is a dot.
+    const begin = (number, before) => (before?.number === number - 1 ? 'L' : 'M');
+    const pixels = (those) => those.map(({ number, pixel: [x, y] }, k) => `${begin(number, those[k - 1])}${x.toFixed(1)} ${y.toFixed(1)}h0`).join('');
     add(svg, 'path', { class: `${kind} later`, d: pixels(points.filter((it) => it.number >= step)) });
     add(svg, 'path', { class: kind, d: pixels(points.filter((it) => it.number <= step)) });
     const now = points.find((it) => it.number === step);

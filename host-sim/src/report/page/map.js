@@ -159,7 +159,9 @@ function drawInset(svg, flight, { bounds, at, isNarrow }) {
   const [left, top] = corners.reduce((best, it) => (hidden(it) < hidden(best) ? it : best));
   const spot = ([px, pz]) => [left + scale * (px - area.left), top + scale * (area.top - pz)];
   add(svg, 'path', { class: 'area border', d: through(flight.area.map(spot), true) });
-  const part = [[bounds.left, bounds.top], [bounds.right, bounds.top], [bounds.right, bounds.bottom], [bounds.left, bounds.bottom]];
+  // The map may show ground beyond the border.
+  const within = ([px, pz]) => [Math.min(Math.max(px, area.left), area.right), Math.min(Math.max(pz, area.bottom), area.top)];
+  const part = [[bounds.left, bounds.top], [bounds.right, bounds.top], [bounds.right, bounds.bottom], [bounds.left, bounds.bottom]].map(within);
   add(svg, 'path', { class: 'inset', d: through(part.map(spot), true) });
 }
 

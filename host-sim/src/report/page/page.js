@@ -54,7 +54,8 @@ function panel(row, flight, charted, extent, id) {
   const side = add(article, 'div', { class: 'side' });
   const told = add(side, 'div', { class: 'words', role: 'status', 'aria-live': 'polite' });
   const grid = add(side, 'div', { class: 'charts' });
-  add(grid, 'p', {}, 'By step. Bars: what is left; across: the truth; dots: the estimate. Click to go there.');
+  const ofLine = 'Bars: what is left; across: the truth; dots: the estimate. ';
+  add(grid, 'p', {}, `By step. ${flight.follows ? '' : ofLine}Click to go there.`);
   const charts = charted.map((chart) => {
     const frame = add(grid, 'figure');
     const title = add(frame, 'figcaption');

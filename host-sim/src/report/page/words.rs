@@ -48,7 +48,7 @@ pub(crate) fn stage(
     told.extend(evidence.map(|it| Told::new(text::level(it), format!("{}.", text::evidence(it)))));
     if !mission.algorithm.seeks_line() {
         let found = step.and_then(|(step, _)| step.front);
-        told.push(Told::new("Front", found.map_or("not found.".into(), |it| on_front(&it))));
+        told.push(Told::new("Front", found.map_or("not known.".into(), |it| on_front(&it))));
         return told;
     }
     told.push(Told::new("Known", known(knowledge, bits)));
