@@ -155,7 +155,12 @@ pub(crate) fn hil(args: &HilArgs) -> Result<Done> {
         Chip::Board { device: device.clone(), baud: args.baud.unwrap_or(BAUD) }
     } else {
         let elf = match emulated {
-            Emulated::Ours(firmware) => firmware.built()?,
+            Emulated::Ours(firmware) => {
+                if let Some(live) = player.live() {
+                    live.say("the firmware is built, if it is not there yet");
+                }
+                firmware.built()?
+            }
             Emulated::Yours(elf) => elf.to_owned(),
         };
         let log = log.as_ref().map(|(_, said)| said.path().to_owned());
