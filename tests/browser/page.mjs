@@ -68,6 +68,12 @@ async function check_stepping(page) {
   await page.click('#last');
   const end = await check_step(page, last, 'last');
   check(end.words.some((it) => it.includes('Ended')), 'last: nobody says why it ended');
+  const [drawn, mapped] = await page.evaluate(() => {
+    const { flights, section } = chapters.find((it) => !it.section.hidden);
+    const places = flights.flatMap(({ scenes, rest }) => [...scenes.flatMap((it) => it.mapped ?? []), ...(rest ?? [])]);
+    return [section.querySelectorAll('.map path.front').length, places.length];
+  });
+  check(drawn === mapped, `last: the map of a front has ${mapped} places, and ${drawn} are drawn`);
   await page.click('#next', { force: true }); // it says that it is disabled, and does nothing
   await check_step(page, last, 'next at the end');
   await page.click('#first');

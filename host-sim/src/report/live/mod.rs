@@ -87,7 +87,7 @@ impl Live {
 
     /// The mission is over.
     pub fn end(&mut self, recording: &Recording) {
-        self.finish(&End::of(recording));
+        self.finish(&End::of(recording, &self.scenes));
     }
 
     /// The mission is over, and came to nothing.

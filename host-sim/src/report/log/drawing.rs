@@ -15,7 +15,7 @@ use planner_core::Label;
 use crate::report::bands::Band;
 use crate::report::ground::Ground;
 use crate::report::log::messages::{FRAME, ROBOT, point, pose, time};
-use crate::report::page::scene::{Flight, Scene, SeenFront};
+use crate::report::page::scene::{Flight, MapPlace, Scene, SeenFront};
 use crate::report::style::{self, ESTIMATE, FRONT, KEEP_OUT, PATH, SHADES, Stroke};
 use crate::world::way::Way;
 
@@ -91,10 +91,9 @@ pub(super) fn steps(flight: &Flight) -> impl Iterator<Item = SceneUpdate> {
 
 /// What grows with every step: a part of it, of some steps.
 fn grown(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Vec<SceneEntity> {
-    let follows = flight.scenes.iter().any(|it| it.front.is_some());
     let path = path(part, flight, steps, second);
     let read = read(part, flight, steps, second);
-    let front = follows.then(|| front(part, flight, steps, second));
+    let front = follows(flight).then(|| front(part, flight, steps, second));
     [path, read].into_iter().chain(front).collect()
 }
 
@@ -118,25 +117,68 @@ fn read(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> Scene
 
 /// The map of a front after some steps, and from the one before on: each piece with the borders of its 90 % band.
 fn front(part: &str, flight: &Flight, steps: &Range<usize>, second: u32) -> SceneEntity {
+    let before = flight.scenes[..=steps.start].iter().rev().find_map(|it| it.mapped.last());
+    let added = flight.scenes[steps.start + 1..=steps.end].iter().flat_map(|it| &it.mapped);
+    let is_end = steps.end + 1 == flight.scenes.len();
+    let rest = flight.rest.iter().filter(|_| is_end && !steps.is_empty());
+    let mut pieces: Vec<Vec<[Point2<f64>; 3]>> = vec![before.map(rung).into_iter().collect()];
+    for it in added.chain(rest) {
+        if it.begins {
+            pieces.push(Vec::new());
+        }
+        pieces.last_mut().expect("at least one").push(rung(it));
+    }
+    // One that begins with the place before, and has no other, is drawn in an earlier part.
+    let is_old = pieces[0].len() < 2;
+    let pieces = pieces.iter().skip(is_old.into());
+    SceneEntity { lines: band(pieces), ..entity(&format!("{part}front"), second) }
+}
+
+/// A place of a map, and the ends of its interval.
+fn rung(MapPlace { at, ends: [left, right], .. }: &MapPlace) -> [Point2<f64>; 3] {
+    [*at, *left, *right]
+}
+
+/// Pieces of a front, each with the borders of its band.
+fn band<'a>(pieces: impl Iterator<Item = &'a Vec<[Point2<f64>; 3]>>) -> Vec<LinePrimitive> {
     let strokes =
         [(THICK, of(FRONT)), (THIN, opaque(SHADES[4].colour)), (THIN, opaque(SHADES[4].colour))];
-    let scenes = if steps.is_empty() { &[] } else { &flight.scenes[steps.start..=steps.end] };
-    let pieces = scenes.split(|it| it.front.is_none()).filter(|piece| !piece.is_empty());
     let lines = pieces.flat_map(|piece| {
         strokes.into_iter().enumerate().map(|(k, (thickness, color))| {
-            let rung =
-                |SeenFront { at, ends: [left, right], .. }: &SeenFront| [*at, *left, *right][k];
-            let way: Vec<_> = piece.iter().filter_map(|it| it.front.as_ref()).map(rung).collect();
+            let way: Vec<_> = piece.iter().map(|it| it[k]).collect();
             line(&way, false, thickness, color)
         })
     });
-    SceneEntity { lines: lines.collect(), ..entity(&format!("{part}front"), second) }
+    lines.collect()
 }
 
-/// What each step replaces: what is known, and the true boundary if it moves.
+/// What the robot has passed since the last place of the map, as it was known then: the map may drop it.
+fn ahead(flight: &Flight, second: u32) -> SceneEntity {
+    let scenes = &flight.scenes[..=second as usize];
+    let last = scenes.iter().rev().find_map(|it| it.mapped.last());
+    let is_whole =
+        scenes.len() == flight.scenes.len() && (last.is_some() || !flight.rest.is_empty());
+    let passed = if is_whole { scenes.len() } else { last.map_or(0, |it| it.passed + 1) };
+    let pieces = scenes[passed.min(scenes.len())..].split(|it| it.front.is_none());
+    let rungs = |piece: &[Scene]| -> Vec<_> {
+        let known = piece.iter().filter_map(|it| it.front.as_ref());
+        known.map(|SeenFront { at, ends: [left, right], .. }| [*at, *left, *right]).collect()
+    };
+    let pieces: Vec<_> = pieces.map(rungs).filter(|it| !it.is_empty()).collect();
+    SceneEntity { lines: band(pieces.iter()), ..entity("front not mapped yet", second) }
+}
+
+/// What each step replaces: what is known, the front beside the robot, and the true boundary if it moves.
 fn seen(flight: &Flight, scene: &Scene, second: u32) -> impl Iterator<Item = SceneEntity> {
     let now = flight.boundary.last().zip(scene.boundary.as_ref());
-    known(scene, second).into_iter().chain(now.map(|(it, ways)| truth(&it.name, ways, second)))
+    let front = follows(flight).then(|| ahead(flight, second));
+    let known = known(scene, second).into_iter().chain(front);
+    known.chain(now.map(|(it, ways)| truth(&it.name, ways, second)))
+}
+
+/// Whether a front is followed, and found.
+fn follows(flight: &Flight) -> bool {
+    flight.scenes.iter().any(|it| it.front.is_some())
 }
 
 /// The true boundary.

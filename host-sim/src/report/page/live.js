@@ -40,7 +40,7 @@ function takeIn() {
     rows.insertAdjacentHTML('beforeend', `${row}\n`);
   }
   if (end !== null) {
-    Object.assign(flown, { ended: end.ended, isGrowing: false, shown: undefined });
+    Object.assign(flown, { ended: end.ended, rest: end.rest, isGrowing: false, shown: undefined });
     said.state = 'ended';
   }
   shownLive.renew();

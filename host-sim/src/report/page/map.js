@@ -76,7 +76,8 @@ function drawMap(svg, flight, step, width, from) {
   drawGround(svg, scene.ground, at);
   if (isPart) svg = field(svg, view);
   drawAxes(sheet, view, width);
-  drawFront(svg, past, at);
+  const front = mapOf(flight, step);
+  drawFront(svg, front, at);
   const shores = flight.shores ?? [];
   if (shores.length > 0) add(svg, 'path', { class: 'keep-out', 'fill-rule': 'evenodd', d: [flight.area, ...shores].map(ring).join('') });
   for (const keepOut of flight.keep_outs) add(svg, 'path', { class: 'keep-out', d: ring(keepOut) });
@@ -100,7 +101,7 @@ function drawMap(svg, flight, step, width, from) {
     add(svg, 'text', { class: 'name', x: x + (isRight ? -10 : 10), y: y + (y < 26 ? 16 : -7), 'text-anchor': isRight ? 'end' : 'start' }, `p${number + 1}`);
   }
   if (!flight.follows) drawMarks(svg, past, at, false);
-  for (const piece of fronts(past)) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
+  for (const piece of front) add(svg, 'path', { class: 'estimate', d: through(piece.map((it) => at(it.at))) });
   if (flight.follows) drawTruth(svg, flight, scene, at);
   drawRobot(svg, flight, step, at, from);
   if (isPart) drawInset(sheet, flight, view);
@@ -165,11 +166,21 @@ function drawInset(svg, flight, { bounds, at, isNarrow }) {
   add(svg, 'path', { class: 'inset', d: through(part.map(spot), true) });
 }
 
-/** The map of a front by its pieces: a new one begins where the front was not known. */
-function fronts(scenes) {
+/**
+ * The map of a front after a step, by its pieces. What the robot has passed since the last place of the map is shown as it
+ * was known then: the map may drop it. At the end the map is whole.
+ */
+function mapOf({ scenes, rest, isGrowing }, step) {
+  const isEnd = step === scenes.length - 1 && !isGrowing;
+  const places = scenes.slice(0, step + 1).flatMap((it) => it.mapped ?? []).concat((isEnd && rest) || []);
   const pieces = [];
-  let last = null;
-  for (const { front } of scenes) {
+  for (const place of places) {
+    if (place.begins) pieces.push([]);
+    pieces.at(-1).push(place);
+  }
+  if (isEnd && places.length > 0) return pieces;
+  let last = places.at(-1);
+  for (const { front } of scenes.slice((last?.passed ?? 0) + 1, step + 1)) {
     if (front) last ? pieces.at(-1).push(front) : pieces.push([front]);
     last = front;
   }
@@ -177,8 +188,8 @@ function fronts(scenes) {
 }
 
 /** Where a front lies with a probability of 90 %, from each place of its map to the next. */
-function drawFront(svg, scenes, at) {
-  for (const piece of fronts(scenes)) {
+function drawFront(svg, pieces, at) {
+  for (const piece of pieces) {
     const [first] = piece;
     for (const [k, { ends }] of piece.entries()) {
       const { ends: before } = k > 0 ? piece[k - 1] : first;

@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::mission::definition::Mission;
 use crate::mission::recording::Recording;
 use crate::mission::results::Start;
-use crate::report::page::scene::{Flight, Moved, Scene};
+use crate::report::page::scene::{Flight, MapPlace, Moved, Scene, Scenes};
 use crate::report::page::words::{Told, minus, signed, small};
 use crate::report::text;
 
@@ -146,16 +146,20 @@ fn escaped(text: &str) -> String {
 #[derive(Debug, Serialize)]
 pub(crate) struct End {
     ended: Vec<Told>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rest: Vec<MapPlace>,
 }
 
 impl End {
-    pub(crate) fn of(recording: &Recording) -> Self {
-        Self { ended: words::ended(&recording.results).collect() }
+    /// Of a mission whose scenes were made so.
+    pub(crate) fn of(recording: &Recording, scenes: &Scenes) -> Self {
+        let results = &recording.results;
+        Self { ended: words::ended(results).collect(), rest: scenes.rest(&results.end.mapped) }
     }
 
     /// Of a mission that came to nothing.
     pub(crate) fn broken_off(why: &str) -> Self {
-        Self { ended: vec![Told::new("Ended", format!("{why}."))] }
+        Self { ended: vec![Told::new("Ended", format!("{why}."))], rest: Vec::new() }
     }
 
     /// As JSON, in one line.
@@ -276,7 +280,12 @@ fn cells(scene: &Scene, follows: bool) -> [String; 11] {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point2;
+
     use super::*;
+    use crate::mission::recording::Recording;
+    use crate::mission::scenario::{self, Overrides};
+    use crate::report::pieces::Pieces;
 
     #[test]
     fn what_fills_a_slot_is_not_filled_again() {
@@ -298,5 +307,33 @@ mod tests {
             escaped("<a href='x' id=\"y\">&"),
             "&lt;a href=&#39;x&#39; id=&quot;y&quot;&gt;&amp;"
         );
+    }
+
+    /// What the scenes and the end have of a map, by its pieces, is what the trace has: a follower drops what it doubts.
+    #[test]
+    fn the_map_that_is_drawn_is_that_of_the_trace() {
+        let text = "algorithm = \"track\"\nsteps = 600\noracle = []\nstart = { x = 10, z = 4 }\nnoise = { p = 0.95 }\n\
+                    vehicle = { kind = \"unicycle\", reach = 4.0, step = 0.5 }\narea = { x = [0, 100], z = [0, 80] }\n\
+                    truth = { polygon = [[40, 53], [52, 64], [60, 54.5], [74, 57.5], [80, 40], [62, 28], [42, 32]] }";
+        for (seed, pieces) in [(7, 6), (8, 4)] {
+            let overrides = Overrides { seed: Some(seed), ..Overrides::default() };
+            let mission = scenario::parse("m", text, overrides).unwrap();
+            let recording = Recording::of(&mission).unwrap();
+            let flight = Flight::of("track", &recording);
+            let mut drawn: Vec<Vec<Point2<f64>>> = Vec::new();
+            for it in flight.scenes.iter().flat_map(|it| &it.mapped).chain(&flight.rest) {
+                if it.begins {
+                    drawn.push(Vec::new());
+                }
+                drawn.last_mut().expect("a piece has begun").push(it.at);
+            }
+            let expected: Vec<_> = Pieces::of(&recording.results).ways().collect();
+            assert_eq!((drawn.len(), expected.len()), (pieces, pieces), "seed {seed}");
+            for (drawn, expected) in drawn.iter().zip(&expected) {
+                assert_eq!(drawn.len(), expected.len(), "seed {seed}");
+                let is_near = |(a, b): (&Point2<f64>, &Point2<f64>)| (a - b).amax() < 0.01;
+                assert!(drawn.iter().zip(expected).all(is_near), "seed {seed}");
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@ use planner_core::{AnyVehicle, Line, Site, Step};
 use serde::Serialize;
 
 use crate::mission::definition::Mission;
-use crate::mission::front::VertexRecord;
+use crate::mission::front::{PassedRecord, VertexRecord};
 use crate::mission::read_out::ReadOut;
 use crate::mission::recording::{Recording, beside_truth};
 use crate::mission::results::{LineError, LineRecord, PoseRecord, Start, StepResult};
@@ -55,6 +55,9 @@ pub(crate) struct Flight {
     pub(crate) scenes: Vec<Scene>,
     /// Why it ended, and what it came to.
     pub(crate) ended: Vec<Told>,
+    /// The last places of a map, which it has at the end.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) rest: Vec<MapPlace>,
     /// The picture of the end, for where no script runs.
     #[serde(skip)]
     pub(crate) picture: Option<Picture>,
@@ -90,6 +93,9 @@ pub(crate) struct Scene {
     pub(crate) estimate: Option<SeenLine>,
     /// Where the front is known best, if one is followed and found.
     pub(crate) front: Option<SeenFront>,
+    /// The places that the map has more after this step.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(crate) mapped: Vec<MapPlace>,
     /// Where the true boundary is after this step, if it moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) boundary: Option<Vec<Way>>,
@@ -119,6 +125,18 @@ pub(crate) struct SeenFront {
     pub(crate) half_width: f64,
     /// The distance of the place from the true front, metres.
     pub(crate) off: Option<f64>,
+}
+
+/// A place of the map of a front.
+#[derive(Debug, Serialize)]
+pub(crate) struct MapPlace {
+    /// The step after which the robot passed it.
+    pub(crate) passed: usize,
+    /// Whether a piece of the map begins with it.
+    pub(crate) begins: bool,
+    /// The place, and the ends of its 90 % interval.
+    pub(crate) at: Point2<f64>,
+    pub(crate) ends: [Point2<f64>; 2],
 }
 
 /// A motion, and what was read at its end.
@@ -196,6 +214,17 @@ impl Rounding {
         world.moves().then(|| world.ways(border).into_iter().map(short).collect())
     }
 
+    /// Places of a map; `is_open` says whether its last piece goes on.
+    fn mapped(self, places: &[PassedRecord], is_open: &mut bool) -> Vec<MapPlace> {
+        let one = |&PassedRecord { passed, begins, ref vertex }: &PassedRecord| MapPlace {
+            passed,
+            begins: !std::mem::replace(is_open, true) || begins,
+            at: self.place(vertex.at()),
+            ends: ends(vertex).map(|at| self.place(at)),
+        };
+        places.iter().map(one).collect()
+    }
+
     fn front(self, step: &StepResult, world: &World) -> Option<SeenFront> {
         let vertex = step.front.as_ref()?;
         let off = || Some(world.distance(Site::try_from(vertex.at()).ok()?).abs());
@@ -224,6 +253,7 @@ impl Flight {
         let picture = Picture::of(planner, recording);
         Self {
             scenes,
+            rest: maker.rest(&results.end.mapped),
             ended: words::ended(results).collect(),
             picture: Some(picture),
             ..Self::begun(planner, mission)
@@ -253,6 +283,7 @@ impl Flight {
             boundary: boundary.map(|it| rounding.drawn(it)).collect(),
             area: polygon(border),
             scenes: Vec::new(),
+            rest: Vec::new(),
             ended: Vec::new(),
             picture: None,
         }
@@ -269,6 +300,8 @@ pub(crate) struct Scenes {
     from: Point2<f64>,
     /// Where the front was known best.
     vertex: Option<Point2<f64>>,
+    /// Whether the last piece of the map goes on.
+    is_open: bool,
     /// Bits learnt so far, and expected so far.
     bits: f64,
     expected_bits: f64,
@@ -280,7 +313,13 @@ impl Scenes {
         let start = Start::of(mission);
         let from = Point2::new(start.pose.x, start.pose.z);
         let rounding = Rounding::of(&mission.config.area.into());
-        Self { start, rounding, from, vertex: None, bits: 0.0, expected_bits: 0.0 }
+        let (vertex, is_open) = (None, false);
+        Self { start, rounding, from, vertex, is_open, bits: 0.0, expected_bits: 0.0 }
+    }
+
+    /// The last places of the map, which it has at the end.
+    pub(crate) fn rest(&self, rest: &[PassedRecord]) -> Vec<MapPlace> {
+        self.rounding.mapped(rest, &mut self.is_open.clone())
     }
 
     /// The next scene: of the start, or after a step that was taken and what came of it. `belief` is what is known then.
@@ -311,6 +350,9 @@ impl Scenes {
         let vertex = step.and_then(|step| step.front);
         let is_beside = vertex.is_some_and(|it| self.is_beside(mission, &it));
         self.vertex = vertex.map(|it| it.at());
+        let mapped = step.map_or(&[][..], |step| &step.mapped);
+        let mapped = rounding.mapped(mapped, &mut self.is_open);
+        self.is_open &= vertex.is_some();
         self.bits = bits;
         self.expected_bits += step.and_then(|step| step.expected).map_or(0.0, |it| it.bits);
         Scene {
@@ -320,6 +362,7 @@ impl Scenes {
             ground: rounding.ground(Ground::of(belief, area)),
             estimate: centre.map(|line| seen(&line, &area.into(), rounding)),
             front: step.filter(|_| is_beside).and_then(|step| rounding.front(step, &world)),
+            mapped,
             boundary: rounding.boundary(&world, &area.into()),
             slopes: knowledge.slope_arcs,
             intercepts: knowledge.intercept,
