@@ -5,6 +5,7 @@
 
 #![cfg(target_family = "wasm")]
 
+use std::iter;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -13,6 +14,7 @@ use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::mission::trace;
 use host_sim::report::page::Chapter;
+use host_sim::report::text;
 use host_sim::world::files;
 
 /// What messages call the scenario.
@@ -29,7 +31,7 @@ type Answer = Result<Flown, String>;
 
 struct Flown {
     recording: Recording,
-    /// What to say of it, a line each.
+    /// What it came to, and what else there is to say of it: a line each.
     notes: Vec<String>,
 }
 
@@ -109,5 +111,7 @@ fn fly(text: &[u8]) -> Result<Flown> {
     let (recording, refusal) = Recording::until_refusal(&mission);
     let doubts = mission.doubts.iter().cloned();
     let refusal = refusal.map(|it| format!("{it:#}"));
-    Ok(Flown { recording, notes: doubts.chain(refusal).collect() })
+    let outcome = text::plainly(&recording.results);
+    let notes = iter::once(outcome).chain(doubts).chain(refusal).collect();
+    Ok(Flown { recording, notes })
 }

@@ -31,7 +31,7 @@ async function opened(what, options, at = address) {
 /** Waits until nothing flies, and returns what is said then. */
 async function flown(page) {
   await page.waitForFunction(() => document.getElementById('stop').hidden && document.getElementById('said').textContent + document.getElementById('refused').textContent !== '', null, { timeout: 60_000 });
-  return { said: await page.textContent('#said'), refused: await page.textContent('#refused') };
+  return { said: await page.textContent('#said'), refused: await page.textContent('#refused'), note: await page.textContent('#note').catch(() => '') };
 }
 
 /** Does something, and waits until what it led to is flown. */
@@ -50,6 +50,23 @@ async function on(page, [x, y]) {
 
 const toml = (page) => page.inputValue('#text');
 
+/** Whether all of an element is within the window. */
+function isSeen(page, element) {
+  return page.evaluate((it) => {
+    const { top, bottom, height } = document.querySelector(it).getBoundingClientRect();
+    return height > 0 && top >= 0 && bottom <= innerHeight;
+  }, element);
+}
+
+/** Drags the mouse over the field. */
+async function drag(page, places) {
+  const [first, ...rest] = await Promise.all(places.map((it) => on(page, it)));
+  await page.mouse.move(...first);
+  await page.mouse.down();
+  for (const at of rest) await page.mouse.move(...at, { steps: 4 });
+  await page.mouse.up();
+}
+
 /** Nothing wider than the window, nothing too small for a finger, no finding. */
 async function looks(page, what) {
   await page.evaluate(() => { document.getElementById('text-of').open = true; });
@@ -61,15 +78,8 @@ async function looks(page, what) {
 /** By mouse: a line, a circle, a shape; the time is dragged; what is copied leads back. */
 async function byMouse() {
   const page = await opened('mouse', { viewport: { width: 1280, height: 800 } });
-  const drag = async (places) => {
-    const [first, ...rest] = await Promise.all(places.map((it) => on(page, it)));
-    await page.mouse.move(...first);
-    await page.mouse.down();
-    for (const at of rest) await page.mouse.move(...at, { steps: 4 });
-    await page.mouse.up();
-  };
   check((await page.getAttribute('#play', 'aria-label')) === 'Pause', 'it does not play by itself');
-  const line = await after(page, () => drag([[0.05, 0.9], [0.95, 0.3]]));
+  const line = await after(page, () => drag(page, [[0.05, 0.9], [0.95, 0.3]]));
   check(line.refused === '' && /0\.\d+ deg off the truth/.test(line.said), `a drawn line is not found: ${line.said}${line.refused}`);
   await page.fill('#slider', '3');
   check((await page.textContent('#count')).startsWith('3 of '), 'the time cannot be dragged');
@@ -78,7 +88,7 @@ async function byMouse() {
   for (const [kind, way] of [['Bend', [[0, 0.6], [0.3, 0.4], [0.7, 0.6], [1, 0.5]]], ['Circle', [[0.6, 0.45], [0.75, 0.45]]], ['Shape', [[0.25, 0.2], [0.8, 0.2], [0.75, 0.7], [0.45, 0.65], [0.25, 0.25]]]]) {
     await after(page, () => page.click(`#kinds >> text=${kind}`));
     const before = await toml(page);
-    const front = await after(page, () => drag(way));
+    const front = await after(page, () => drag(page, way));
     check((await toml(page)) !== before, `${kind}: the stroke draws nothing`);
     check(front.refused === '' && front.said.includes('In truth it lies 0.'), `${kind}: it is not found: ${front.said}${front.refused}`);
     await page.click('#last');
@@ -86,12 +96,17 @@ async function byMouse() {
   }
   // Copied, and back.
   await page.evaluate(() => { document.getElementById('text-of').open = true; });
-  for (const [what, begins] of [['toml', '# Save this'], ['rust', '//! In a copy'], ['python', '# pip install'], ['link', 'file:']]) {
-    await after(page, () => page.click(`[data-copy=${what}]`));
+  const said = await page.textContent('#said');
+  for (const [what, begins, where] of [['toml', '# Save this', 'host-sim run'], ['rust', '//! In a copy', 'a Rust program'], ['python', '# pip install', 'a Python program'], ['link', 'file:', 'nobody else can open it']]) {
+    await page.click(`[data-copy=${what}]`);
+    await page.waitForFunction((it) => document.getElementById('note').textContent.includes(it), where, { timeout: 2000 }).catch(() => check(false, `as ${what}: it does not say that it copied ${where}`));
+    check((await isSeen(page, '#note')) && (await page.textContent('#said')) === said, `as ${what}: the word is out of sight, or in place of the result`);
     const text = await page.evaluate(() => navigator.clipboard.readText());
     check(text.startsWith(begins), `as ${what}: ${text}`);
     writeFileSync(join(folder, `copied.${what}`), text);
   }
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('#download')]);
+  check(download.suggestedFilename() === 'scenario.toml' && readFileSync(await download.path(), 'utf8') === (await toml(page)), 'the download is another scenario');
   const other = await opened('link', {}, readFileSync(join(folder, 'copied.link'), 'utf8'));
   check((await toml(other)) === (await toml(page)), 'the link leads to another scenario');
   await other.context().close();
@@ -131,7 +146,7 @@ async function byMouse() {
   await page.fill('#text', (await toml(page)).replace(/stop = .*/, '').replace('steps = 60', 'steps = 10000').replace('"lookahead"', '"random"'));
   await page.click('#run-text');
   await page.click('#stop');
-  check((await page.textContent('#said')) === 'Stopped.', 'it does not stop');
+  check((await page.textContent('#note')) === 'Stopped.', 'it does not stop');
   await page.context().close();
 }
 
@@ -152,6 +167,8 @@ async function byTouch() {
   const circle = await after(page, () => stroke([[0.5, 0.5], [0.6, 0.5], [0.7, 0.5]]));
   check(circle.refused === '' && circle.said.includes('In truth it lies 0.'), `a circle by finger: ${circle.said}${circle.refused}`);
   check(/circle = \[(49\.9|50)/.test(await toml(page)), `another circle than was drawn: ${await toml(page)}`);
+  await page.waitForTimeout(300);
+  check(await isSeen(page, '.map > svg'), 'the robot plays below the screen');
   await page.tap('#first');
   await page.tap('#next');
   check((await page.textContent('#count')).startsWith('1 of '), 'next by finger');
@@ -190,6 +207,112 @@ async function byKeys() {
   await page.context().close();
 }
 
+/** What one trips over who sees it for the first time. */
+async function asStranger() {
+  const page = await opened('stranger', { viewport: { width: 1280, height: 800 } });
+  const value = (name) => page.evaluate((it) => document.querySelector(`[name=${it}]`)[it === 'told' || it === 'moves' ? 'checked' : 'value'], name);
+  const turn = (kind) => after(page, () => page.click(`#kinds >> text=${kind}`));
+  const choose = (name, to) => after(page, () => page.selectOption(`[name=${name}]`, to));
+  const type = async (name, to) => {
+    await page.fill(`[name=${name}]`, to);
+    await page.press(`[name=${name}]`, 'Tab');
+  };
+  const drop = (name, text, mimeType = '') => after(page, () => page.setInputFiles('#file', { name, mimeType, buffer: Buffer.from(text) }));
+  // The result in a sentence, with the labels that were read.
+  const labels = () => page.evaluate(() => chapters[0].flights[0].scenes.filter((it) => (it.motion?.label ?? null) !== null).length);
+  const first = await page.textContent('#said');
+  check(first.startsWith(`The robot found the boundary with ${await labels()} labels (`) && first.includes('for the audit) and'), `the first sentence: ${first}`);
+  check(await page.isDisabled('#again'), 'another seed is offered where nothing is random');
+  // The shade is on the side of the +1 labels, whatever the line.
+  for (const line of [[[0.4, 0.9], [0.4, 0.1]], [[0.4, 0.1], [0.4, 0.9]], [[0.5, 0.95], [0.55, 0.05]], [[0.5, 0.05], [0.55, 0.95]], [[0.1, 0.2], [0.9, 0.7]]]) {
+    await after(page, () => drag(page, line));
+    const isShaded = await page.evaluate(() => {
+      const shade = document.querySelector('#field path.certain.above');
+      const marks = [...document.querySelectorAll('#field > .mark')];
+      return marks.length === 4 && marks.every((it) => {
+        const { x, y, width, height } = it.getBBox();
+        return shade.isPointInFill(new DOMPoint(x + width / 2, y + height / 2)) === it.classList.contains('above');
+      });
+    });
+    check(isShaded, `the shade of the line ${line} is not that of the labels`);
+  }
+  check((await page.evaluate(() => getComputedStyle(document.querySelector('#field .of-robot .halo')).fill)) === 'none', 'the robot hides the label where it starts');
+  // No choice fails for a number that nobody set.
+  const tracks = await choose('planner', 'lawnmower');
+  const noisy = await choose('p', '0.8');
+  check(tracks.refused === '' && noisy.refused === '', `parallel tracks: ${tracks.refused}${noisy.refused}`);
+  const boat = await choose('vehicle', 'boat');
+  check(boat.refused === '' && boat.note.startsWith('Changed: the planner is Look-ahead'), `parallel tracks by boat: ${boat.refused}${boat.note}`);
+  // What was set stays, or it is said.
+  await choose('planner', 'scc');
+  const bend = await turn('Bend');
+  check(bend.note === 'Changed: the planner is Track, as this boundary is no straight line.', `Algorithm 2 and a bend: ${bend.note}`);
+  await choose('size', '50 x 50');
+  await after(page, () => page.check('[name=moves]'));
+  await after(page, () => page.check('[name=told]'));
+  await turn('Circle');
+  const kept = Object.fromEntries(await Promise.all(['p', 'vehicle', 'size', 'moves', 'told'].map(async (it) => [it, await value(it)])));
+  check(JSON.stringify(kept) === '{"p":"0.8","vehicle":"boat","size":"50 x 50","moves":true,"told":true}', `a circle leaves ${JSON.stringify(kept)}`);
+  const coast = await turn('Random coast');
+  check(coast.note.includes('no label is known') && (await value('moves')) && (await page.isVisible('#untold')), `a coast: ${coast.note}`);
+  const square = (size) => JSON.stringify({ type: 'Polygon', coordinates: [[[7, 46], [7 + size, 46], [7 + size, 46 + size], [7, 46 + size], [7, 46]]] });
+  const shape = await drop('shape.geojson', square(0.01));
+  check(/The shape is drawn \d+ times smaller/.test(shape.note) && (await value('p')) === '0.8' && (await value('size')) === '50 x 50', `a shape from a file: ${shape.note}`);
+  await page.check('[name=isArea]');
+  const area = await drop('area.geojson', square(0.01));
+  check(area.note.includes('the field is that of the file') && (await page.textContent('[name=size] option:checked')).startsWith('772 x 1112 m'), `an area: ${area.note}`);
+  await page.uncheck('[name=isArea]');
+  // What is wrong is said in plain words where one looks, and the result stays.
+  const result = await page.textContent('#said');
+  for (const [name, mime] of [['a.txt', 'text/plain'], ['a.pdf', 'application/pdf'], ['a.docx', ''], ['a.png', 'image/png'], ['a.asc', '']]) {
+    await page.setInputFiles('#file', { name, mimeType: mime, buffer: Buffer.from('%PDF-1.4 {"\u0000\ufffd') });
+    await page.waitForFunction((it) => document.getElementById('refused').textContent === `${it}: This is no GeoJSON, PNG or ASCII grid.`, name, { timeout: 2000 }).catch(async () => check(false, `${name}: ${await page.textContent('#refused')}`));
+  }
+  check((await isSeen(page, '#refused')) && (await page.textContent('#said')) === result, 'an error is out of sight, or in place of the result');
+  for (const seed of ['1e99', '-7', '2.5']) {
+    await type('seed', seed);
+    check((await page.textContent('#refused')).startsWith(`Random seed: found ${seed}, expected a whole number from 0 to 999999`), `the seed ${seed}: ${await page.textContent('#refused')}`);
+  }
+  await page.fill('#text', ' ');
+  await page.click('#run-text');
+  check((await page.textContent('#refused')) === 'The text is empty.', `an empty text: ${await page.textContent('#refused')}`);
+  await page.fill('#text', 'steps = "many"');
+  const many = await after(page, () => page.click('#run-text'));
+  check(many.refused !== '' && (await isSeen(page, '#refused')) && (await page.isVisible('#before')) && many.said.startsWith('The run before: '), `a text that cannot be flown: ${many.said}`);
+  await checkLooks(page, 'a refusal');
+  const own = await after(page, () => page.click('#kinds >> text=Line'));
+  check(own.note.includes('the text is written anew') && !(await page.isVisible('#before')), `a text of one's own: ${own.note}`);
+  // In the words of the page: no minus zero, no plural of one.
+  await after(page, async () => { await page.uncheck('[name=moves]'); });
+  await choose('planner', 'lookahead');
+  const wrong = await page.evaluate(() => chapters[0].flights[0].scenes.flatMap((it) => it.told.map(({ text }) => text)).filter((it) => /\b1 hypotheses|[-\u2212]0\.00/.test(it)));
+  check(wrong.length === 0 && (await page.evaluate(() => chapters[0].flights[0].scenes.length)) > 10, `words: ${wrong}`);
+  // The charts stay where they are while it plays.
+  const tops = await page.evaluate(() => {
+    const section = document.querySelector('.chapter');
+    return chapters[0].flights[0].scenes.slice(0, -1).map((_, k) => { go(k); return section.querySelector('.charts').getBoundingClientRect().top - section.getBoundingClientRect().top; });
+  });
+  check(Math.max(...tops) - Math.min(...tops) < 1, `the charts move by ${Math.max(...tops) - Math.min(...tops)} px`);
+  // Three steps are too few.
+  await page.fill('#text', (await toml(page)).replace(/steps = \d+/, 'steps = 3'));
+  const few = await after(page, () => page.click('#run-text'));
+  check(few.said.startsWith('The robot did NOT find the boundary with 3 labels and 3 motions: all 3 steps are taken.'), `three steps: ${few.said}`);
+  const again = await after(page, () => page.click('#again'));
+  check(again.said.includes('all 3 steps are taken') && (await toml(page)).includes('seed = 2'), `another seed: ${again.said}`);
+  // A stroke that begins beside a corner draws another shape.
+  await turn('Shape');
+  const corner = await page.locator('#field [data-key="0"] .grip').boundingBox();
+  const box = await page.locator('#field rect.area').boundingBox();
+  const beside = [(corner.x + corner.width + 5 - box.x) / box.width, (corner.y - 5 - box.y) / box.height];
+  await after(page, () => drag(page, [beside, [0.8, 0.3], [0.8, 0.7], [0.5, 0.6]]));
+  check((await page.locator('#field .grip').count()) === 4, 'a stroke beside a corner bends the shape');
+  await page.context().close();
+  const cut = await opened('cut', {}, `${address}#q1YqLkksKS1WsqpWy`);
+  check((await cut.textContent('#note')) === 'This link is incomplete: this is the example.', 'a link that is cut off opens the example without a word');
+  await cut.context().close();
+}
+
+await asStranger();
 await byMouse();
 await byTouch();
 await byKeys();

@@ -2,7 +2,8 @@
 //
 //   node programs.mjs FOLDER
 //
-// saves FOLDER/NAME.scenario, NAME.rs and NAME.py.
+// saves FOLDER/NAME.scenario, NAME.rs and NAME.py; and as NUMBER.choice what comes of each choice of boundary, planner,
+// sensor and vehicle.
 
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
@@ -10,7 +11,7 @@ import { join } from 'node:path';
 const [folder] = process.argv.slice(2);
 const source = (path) => readFileSync(new URL(`../../${path}`, import.meta.url), 'utf8');
 const text = ['host-sim/src/report/page/map.js', 'playground/src/page/scenario.js', 'playground/src/page/programs.js'].map(source).join('\n');
-const { begun, toml, rust, python, KINDS } = new Function(`${text}; return { begun, toml, rust, python, KINDS };`)();
+const { allowed, begun, toml, rust, python, KINDS, PLANNERS, SENSORS, VEHICLES } = new Function(`${text}; return { allowed, begun, toml, rust, python, KINDS, PLANNERS, SENSORS, VEHICLES };`)();
 const lake = source('host-sim/scenarios/lakes/kyyvesi.geojson');
 const states = {
   ...Object.fromEntries(Object.keys(KINDS).map((kind) => [kind, begun(kind)])),
@@ -26,3 +27,6 @@ for (const [name, state] of Object.entries(states)) {
   for (const [ending, program] of [['scenario', toml], ['rs', rust], ['py', python]]) writeFileSync(join(folder, `${name}.${ending}`), program(state));
 }
 writeFileSync(join(folder, 'area.geojson'), lake);
+const choices = Object.keys(KINDS).map((kind) => states[kind]).concat(states.lake).flatMap((state) =>
+  PLANNERS.flatMap(([planner]) => SENSORS.flatMap(([p]) => VEHICLES.flatMap(([vehicle]) => [true, false].map((told) => ({ ...state, planner, p, vehicle, told }))))));
+for (const [number, choice] of choices.entries()) writeFileSync(join(folder, `${number}.choice`), toml(allowed(choice, number % 7 < 3 ? 'vehicle' : 'planner').state));

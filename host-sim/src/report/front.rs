@@ -60,6 +60,11 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
                 record.closed
             )
         }
+        (State::Closed, _) if has_gaps(record) => {
+            format!(
+                "The front was found at {unit} {found}, and the robot came back to where it was found.\n"
+            )
+        }
         (State::Closed, _) => {
             format!(
                 "The front is closed: it was found at {unit} {found}, and the robot went all round it.\n"
@@ -72,7 +77,7 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
     };
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}; {driven:.1} m were driven for it.", extent(vertices, metres));
-    if record.gaps > UNMAPPED * metres {
+    if has_gaps(record) {
         let MapRecord { pieces, gaps, .. } = record;
         let _ = match pieces {
             1 => writeln!(text, "Between its ends {gaps:.0} m are not mapped."),
@@ -88,6 +93,11 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         );
     }
     text
+}
+
+/// Whether a part of the front that is worth a word is not mapped.
+pub(crate) fn has_gaps(record: &MapRecord) -> bool {
+    record.gaps > UNMAPPED * record.metres
 }
 
 /// How far a map goes, at the beginning of a sentence.

@@ -8,6 +8,7 @@ use planner_core::watch::{Alarm, Suspect};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{ToleranceRecord, tidy};
 use crate::mission::from_nothing::SeekRecord;
+use crate::mission::map::State;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results,
     SampleRecord, Start, StepResult,
@@ -155,6 +156,43 @@ pub(crate) fn ended(results: &Results) -> Vec<(&'static str, String)> {
     told.extend(diagnosis.iter().flat_map(|it| diagnosis::told(it, &line(&it.line))));
     told.extend(remedy(results).map(|it| ("Advice", it.to_owned())));
     told
+}
+
+/// What a mission came to, in one sentence for somebody who sees it for the first time.
+pub fn plainly(results: &Results) -> String {
+    let End { reason, front, goal, fit, .. } = &results.end;
+    let counted = |many: usize, what: &str| match many {
+        1 => format!("1 {what}"),
+        _ => format!("{many} {what}s"),
+    };
+    let is_audit = |it: &&StepResult| it.problem.as_deref() == Some(AUDIT) && it.label.is_some();
+    let audit = match results.steps.iter().filter(is_audit).count() {
+        0 => String::new(),
+        many => format!(" ({many} of them for the audit)"),
+    };
+    let (steps, labels) = (results.steps.len(), counted(results.samples(), "label"));
+    let took = format!("with {labels}{audit} and {}", counted(steps, "motion"));
+    let why = match &**reason {
+        "steps" => format!("all {steps} steps are taken"),
+        _ => why(reason).to_owned(),
+    };
+    let off = estimates(results)[0].1.and_then(|it| it.error).filter(|_| fit.is_none());
+    let is_whole = &**reason == "closed";
+    match (front, goal, off) {
+        (Some(map), ..) if is_whole && front::has_gaps(map) => {
+            format!("The robot found {} of the boundary {took}.", counted(map.pieces, "piece"))
+        }
+        (Some(_), ..) if is_whole => format!("The robot found the boundary {took}."),
+        (Some(map), ..) if map.state == State::Followed => {
+            format!("The robot found a part of the boundary {took}: {why}.")
+        }
+        (None, Some(goal), _) if goal.is_met => format!("The robot found the boundary {took}."),
+        (None, None, Some(error)) => {
+            let degrees = fixed(error.degrees, 2);
+            format!("The robot's line is {degrees} deg off the boundary {took}: {why}.")
+        }
+        _ => format!("The robot did NOT find the boundary {took}: {why}."),
+    }
 }
 
 /// How many readings there were on the way and at the ends of motions, where there are such on the way.
@@ -571,7 +609,7 @@ fn noisy_steps(steps: &[StepResult]) -> Table {
         (Column::right("label", 5), &|it| signed(it.label)),
         (Column::right("in fact", 6), &|it| signed(it.fact) + wrong(it)),
         (Column::right("hypotheses", 10), &|it| it.hypotheses.unwrap_or_default().to_string()),
-        (Column::right("entropy", 7), &|it| format!("{:.2}", it.entropy.unwrap_or_default())),
+        (Column::right("entropy", 7), &|it| fixed(it.entropy.unwrap_or_default(), 2)),
         (Column::right("bits", 5), &|it| fixed(it.bits, 2)),
         (Column::left("slopes of the 90 % set, deg", 0).apart(), &|it| {
             arcs(&it.slope_arcs) + trusted(it)

@@ -1,5 +1,7 @@
 // The field: what is true, drawn with mouse, finger or keys.
 
+const FINGER = matchMedia('(pointer: coarse)');
+
 /** An editor over a drawing. `made` returns what is made, `seen` the boundary that the
  *  simulator has seen, `changed` is told of another, `done` when a hand is lifted. */
 function editor(svg, { made, changed, done, seen }) {
@@ -24,7 +26,7 @@ function editor(svg, { made, changed, done, seen }) {
     const old = made();
     const { left, bottom, width, height } = ground(old);
     const within = ([x, z]) => [Math.min(left + width, Math.max(left, x)), Math.min(bottom + height, Math.max(bottom, z))].map(tidy);
-    if (key === 'start') return changed({ ...old, start: within(at) });
+    if (key === 'start') return changed({ ...old, start: within(at) }, key);
     const points = [...old.points];
     points[Number(key)] = within(at);
     // A circle moves as a whole by its middle.
@@ -63,7 +65,7 @@ function editor(svg, { made, changed, done, seen }) {
     if (event.button !== 0 || drag !== null) return;
     const handle = event.target.closest('[data-key]');
     if (handle === null && (made().kind === 'coast' || made().raster !== null)) return;
-    drag = { key: handle?.dataset.key ?? null, way: [place(event)], id: event.pointerId };
+    drag = { key: handle?.dataset.key ?? null, way: [place(event)], id: event.pointerId, before: made() };
     svg.setPointerCapture(event.pointerId);
     handle?.focus({ preventScroll: true });
     event.preventDefault();
@@ -76,8 +78,9 @@ function editor(svg, { made, changed, done, seen }) {
   });
   const lifted = (event) => {
     if (drag?.id !== event.pointerId) return;
+    const isOther = made() !== drag.before;
     drag = null;
-    done();
+    if (isOther) done(true);
   };
   svg.addEventListener('pointerup', lifted);
   svg.addEventListener('pointercancel', lifted);
@@ -106,7 +109,7 @@ function editor(svg, { made, changed, done, seen }) {
     } else return;
     event.preventDefault();
     event.stopPropagation();
-    done();
+    done(false);
   });
 
   /** Draws all of it anew; whatever had the focus keeps it. */
@@ -144,11 +147,13 @@ function editor(svg, { made, changed, done, seen }) {
       const [x, y] = at(where);
       const words = `${name}: x ${figure(where[0], 2)}, z ${figure(where[1], 2)} metres`;
       const handle = add(svg, 'g', { class: `handle ${key === 'start' ? 'of-robot' : ''}`, 'data-key': key, tabindex: 0, role: 'button', 'aria-label': words, 'aria-describedby': 'handle-keys', transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` });
-      add(handle, 'circle', { class: 'reach', r: state.points.length > 12 && key !== 'start' ? 9 : 17 });
+      const isSmall = state.points.length > 12 && key !== 'start';
+      // What can be gripped is little more than what is seen, so that a stroke may begin beside it.
+      add(handle, 'circle', { class: 'reach', r: FINGER.matches ? (isSmall ? 8 : 11) : isSmall ? 6 : 9 });
       if (key === 'start') {
         add(handle, 'circle', { class: 'halo', r: 8 });
         add(handle, 'path', { class: 'bow', d: 'M8 -4L16 0L8 4Z' });
-      } else add(handle, 'circle', { class: 'grip', r: state.points.length > 12 ? 4 : 7 });
+      } else add(handle, 'circle', { class: 'grip', r: isSmall ? 4 : 7 });
       if (key === focused) handle.focus({ preventScroll: true });
     }
   };
@@ -177,7 +182,8 @@ function truthOn(svg, state, at, seen) {
     return [px + ((px - qx) / length) * far, pz + ((pz - qz) / length) * far];
   };
   const whole = kind === 'shape' ? sorted : [beyond(sorted[0], sorted[1]), ...sorted, beyond(sorted.at(-1), sorted.at(-2))];
-  const above = kind === 'shape' ? whole : [...whole, [whole.at(-1)[0], far], [whole[0][0], far]];
+  // It is closed beyond the corners on its left, counter-clockwise: its ends may lie above or below the field.
+  const above = kind === 'shape' ? whole : [...whole, [2 * far, whole.at(-1)[1]], [2 * far, 2 * far], [-2 * far, 2 * far], [-2 * far, whole[0][1]]];
   add(svg, 'path', { class: 'certain above', d: through(above.map(at), true) });
   add(svg, 'path', { class: 'truth', d: through(whole.map(at), kind === 'shape') });
 }

@@ -6,22 +6,91 @@ const KINDS = {
   bend: { name: 'Bend', hint: 'Drag from left to right to draw another coast, or move its points.', size: '100 x 80', points: [[0, 0.3], [0.25, 0.62], [0.5, 0.5], [0.72, 0.7], [1, 0.45]] },
   circle: { name: 'Circle', hint: 'Drag from the middle to the rim to draw another spill, or move both.', size: '100 x 80', points: [[0.6, 0.56], [0.75, 0.56]] },
   shape: { name: 'Shape', hint: 'Drag all the way round a shape to draw it, or move its corners.', size: '100 x 80', points: [[0.42, 0.4], [0.62, 0.35], [0.8, 0.5], [0.74, 0.72], [0.6, 0.68], [0.52, 0.8], [0.4, 0.66]] },
-  coast: { name: 'Any coast', hint: 'Luck draws this coast. Run with other luck for another.', size: '100 x 80', points: [] },
+  coast: { name: 'Random coast', hint: 'A random coast: you draw nothing. Run with another random seed for another one.', size: '100 x 80', points: [] },
 };
 const PLANNERS = [['lookahead', 'Look-ahead: a line'], ['cfc', 'Algorithm 1: a line'], ['scc', 'Algorithm 2: a line'], ['track', 'Track: a front'], ['lawnmower', 'Parallel tracks'], ['random', 'A random walk']];
 const VEHICLES = [['unicycle', 'Rover'], ['boat', 'Boat'], ['car', 'Car']];
-const SENSORS = [['1', 'always right'], ['0.98', 'right in 98 of 100'], ['0.95', 'right in 95 of 100'], ['0.9', 'right in 9 of 10'], ['0.8', 'right in 8 of 10']];
+const SENSORS = [['1', 'never wrong'], ['0.98', 'wrong 2 % of the time'], ['0.95', 'wrong 5 % of the time'], ['0.9', 'wrong 10 % of the time'], ['0.8', 'wrong 20 % of the time']];
 const SIZES = ['20 x 20', '50 x 50', '100 x 80', '200 x 150', '800 x 500'];
 /** Where the four labels are known, and where the robot begins. */
 const TOLD = [[0.1, 0.05], [0.1, 0.4], [0.9, 0.8], [0.9, 0.25]];
 const START = [0.1, 0.05];
 
+/** Planners that find a straight line alone, and those that go on whatever the vehicle can do. */
+const OF_LINES = ['lookahead', 'cfc', 'scc'];
+const HEEDLESS = ['lawnmower', 'random'];
+
 /** What one begins with who chooses a boundary to draw. */
-function begun(kind, seed = 1) {
-  const { size, points } = KINDS[kind];
+function begun(kind, seed = 1, size = KINDS[kind].size) {
+  const { points } = KINDS[kind];
   const isLine = kind === 'line';
   const field = ground({ size, map: null });
   return { kind, size, points: places(field, points), start: places(field, [START])[0], told: isLine, moves: false, vehicle: 'unicycle', p: isLine ? '1' : '0.95', planner: isLine ? 'lookahead' : 'track', seed, map: null, raster: null, text: null };
+}
+
+/** What the form calls a value. */
+function called(all, value) {
+  return all.find(([own]) => own === value)[1];
+}
+
+/** The same drawing in a field of another size. */
+function resized(state, size) {
+  const [from, to] = [ground(state), ground({ ...state, size })];
+  const scaled = ([x, z]) => [tidy((x * to.width) / from.width), tidy((z * to.height) / from.height)];
+  return { ...state, size, points: state.points.map(scaled), start: scaled(state.start) };
+}
+
+/** What is flown of what somebody wants, who set `last` last; and what had to change for that: names and words. */
+function allowed(state, last) {
+  const changed = [];
+  let { planner, vehicle } = state;
+  if (state.moves && (last === 'moves' || last === 'kind') && planner !== 'track') {
+    planner = 'track';
+    changed.push(['planner', 'the planner is Track, which follows a boundary that moves']);
+  } else if (last === 'kind' && OF_LINES.includes(planner) && (state.kind !== 'line' || isHidden(state))) {
+    planner = 'track';
+    changed.push(['planner', 'the planner is Track, as this boundary is no straight line']);
+  }
+  if (planner === 'lawnmower' && state.map !== null) {
+    planner = 'track';
+    changed.push(['planner', 'the planner is Track, as parallel tracks go straight across a field without land']);
+  }
+  if (HEEDLESS.includes(planner) && vehicle !== 'unicycle') {
+    if (last === 'vehicle') {
+      planner = state.kind === 'line' && !isHidden(state) && !state.moves ? 'lookahead' : 'track';
+      changed.push(['planner', `the planner is ${called(PLANNERS, planner)}, as the one before needs a vehicle that turns on the spot`]);
+    } else {
+      vehicle = 'unicycle';
+      changed.push(['vehicle', 'the vehicle is a Rover, as this planner needs one that turns on the spot']);
+    }
+  }
+  return { state: { ...state, planner, vehicle }, changed };
+}
+
+/** Another boundary, with all that somebody has `set` and that can stay; and what cannot, in words. */
+function turned(old, next, set) {
+  const [from, to] = [ground(old), ground(next)];
+  const values = ['planner', 'vehicle', 'p', 'told', 'moves'].filter((it) => set.has(it)).map((it) => [it, old[it]]);
+  const start = [tidy(((old.start[0] - from.left) * to.width) / from.width), tidy(((old.start[1] - from.bottom) * to.height) / from.height)];
+  const staying = set.has('start') && old.map === null && next.map === null ? { start } : {};
+  const { state, changed } = allowed({ ...next, ...Object.fromEntries(values), ...staying }, 'kind');
+  if (next.map !== null) changed.push(['start', 'the robot starts in the water'], ['size', 'the field is that of the file']);
+  if (old.told && !isHidden(old) && isHidden(state)) changed.push(['told', 'no label is known, as only the simulator knows these sides']);
+  return { state, changed: changed.filter(([name]) => set.has(name)) };
+}
+
+/** Whether another seed leads to another mission. */
+function isRandom({ p, planner, kind, map, raster, text }) {
+  return text !== null || p !== '1' || planner === 'random' || (kind === 'coast' && map === null && raster === null);
+}
+
+/** The same with another seed. A text of one's own keeps all else. */
+function reseeded(state) {
+  const seed = state.seed + 1;
+  if (state.text === null) return { ...state, seed };
+  const line = /^seed\s*=.*$/m;
+  const text = line.test(state.text) ? state.text.replace(line, (it) => `seed = ${(Number(it.match(/\d+/)?.[0]) || 0) + 1}`) : `seed = ${seed}\n${state.text}`;
+  return { ...state, seed, text };
 }
 
 /** Where a field lies, metres; of a map also its rings, and the latitude and longitude of the origin. */
@@ -36,6 +105,8 @@ function places({ left, bottom, width, height }, shares) {
   return shares.map(([x, z]) => [tidy(left + x * width), tidy(bottom + z * height)]);
 }
 
+const UNREADABLE = 'This is no GeoJSON, PNG or ASCII grid.';
+
 /** The rings of all polygons of a GeoJSON file. */
 function rings(text) {
   const found = [];
@@ -45,7 +116,13 @@ function rings(text) {
     else if (it?.type === 'MultiPolygon') found.push(...it.coordinates.flat());
     else take(it?.features ?? it?.geometries ?? it?.geometry ?? []);
   };
-  take(JSON.parse(text));
+  let read = null;
+  try {
+    read = JSON.parse(text);
+  } catch {
+    throw new Error(UNREADABLE);
+  }
+  take(read);
   const isPlace = (it) => Array.isArray(it) && it.length > 1 && it.slice(0, 2).every(Number.isFinite);
   if (found.length === 0 || !found.every((ring) => Array.isArray(ring) && ring.length > 2 && ring.every(isPlace))) {
     throw new Error('found no polygon, expected a GeoJSON file with a Polygon or MultiPolygon');
@@ -91,19 +168,20 @@ function afloat({ left, bottom, width, height, rings: shores }) {
   return { middle: middle.at.map(tidy), room: middle.room, start: start.at.map(tidy) };
 }
 
-/** A shape from a file as corners in a field. Latitude and longitude are brought to its middle. */
+/** A shape from a file as corners in a field, and how many times smaller it is there. Latitude and longitude are brought to
+ *  its middle. */
 function brought(text, { left, bottom, width, height }) {
   const [longest] = rings(text).sort((a, b) => b.length - a.length);
   const isNear = longest.every(([x, z]) => x >= left && x <= left + width && z >= bottom && z <= bottom + height);
   const isGlobe = longest.every(([x, z]) => Math.abs(x) <= 180 && Math.abs(z) <= 90);
   const open = longest.filter(([x, z], k) => k === 0 || x !== longest[0][0] || z !== longest[0][1]);
-  if (isNear && !(isGlobe && longest.some(([x, z]) => x % 1 && z % 1))) return thinned(open, 0, 300);
+  if (isNear && !(isGlobe && longest.some(([x, z]) => x % 1 && z % 1))) return { points: thinned(open, 0, 300), smaller: 1 };
   const box = around(open);
   const shrink = isGlobe ? Math.cos((((box.top + box.bottom) / 2) * Math.PI) / 180) : 1;
   const scale = 0.7 * Math.min(width / ((box.right - box.left) * shrink), height / (box.top - box.bottom));
   const middle = [(box.left + box.right) / 2, (box.bottom + box.top) / 2];
   const there = ([x, z]) => [tidy(left + width / 2 + (x - middle[0]) * shrink * scale), tidy(bottom + height / 2 + (z - middle[1]) * scale)];
-  return thinned(open.map(there), width / 400, 120);
+  return { points: thinned(open.map(there), width / 400, 120), smaller: (isGlobe ? METRES_A_DEGREE : 1) / scale };
 }
 
 /** Fewer points of a way: those within `off` of the rest are left out, and more until there are few enough. */
@@ -232,7 +310,9 @@ const MOST_CELLS = 160;
 
 /** An image as a grid over a field: the luminance of its cells, 0 to 255. */
 async function gridded(file, { left, bottom, width, height }) {
-  const image = await createImageBitmap(file);
+  const image = await createImageBitmap(file).catch(() => {
+    throw new Error(UNREADABLE);
+  });
   const scale = Math.min(1, MOST_CELLS / Math.max(image.width, image.height));
   const [columns, rows] = [image.width, image.height].map((it) => Math.max(2, Math.round(it * scale)));
   const sheet = new OffscreenCanvas(columns, rows).getContext('2d');
@@ -244,9 +324,13 @@ async function gridded(file, { left, bottom, width, height }) {
   return `${head}${Array.from({ length: rows }, (_, row) => line(row)).join('\n')}\n`;
 }
 
+/** The labels that a planner holds where they may be wrong. */
+const ROOM = 68;
+
 /** The scenario file. */
 function toml(state) {
   if (state.text !== null) return state.text;
+  const isSure = state.p === '1';
   const { width, height, origin } = ground(state);
   const follows = state.planner === 'track';
   const isSpill = state.kind === 'circle' || state.kind === 'shape';
@@ -256,12 +340,12 @@ function toml(state) {
   const lines = [
     '# Save this as scenario.toml, and run it: host-sim run scenario.toml --figure scenario.svg',
     `algorithm = "${state.planner}"`,
-    `steps = ${follows ? 600 : state.planner === 'lawnmower' ? 200 : 60}`,
+    `steps = ${follows ? 600 : state.planner !== 'lawnmower' ? 60 : isSure ? 200 : ROOM - given.length}`,
     `seed = ${state.seed}`,
     state.map !== null ? `area = { geojson = "${MAP}" }` : `area = { x = [0, ${width}], z = [0, ${height}] }`,
     `vehicle = ${vehicle(state)}`,
-    ...(state.p === '1' ? [] : [`noise = { p = ${state.p} }   # a label is true with this probability`]),
-    ...(state.planner === 'lookahead' ? [`stop = { slope_arc_deg = ${state.p === '1' ? 0.5 : 5} }   # it is enough to know the slope so well`] : []),
+    ...(isSure ? [] : [`noise = { p = ${state.p} }   # a label is true with this probability`]),
+    ...(state.planner === 'lookahead' ? [`stop = { slope_arc_deg = ${isSure ? 0.5 : 5} }   # it is enough to know the slope so well`] : []),
     ...(follows && state.moves ? [`front = { speed = ${speed(state)} }   # how far the front may move in a step`] : []),
     ...(follows && given.length === 0 ? [`seek = { likely = "${isSpill ? 'spill' : 'coast'}" }`] : []),
     state.map !== null ? `start = { lat = ${degrees()[0]}, lon = ${degrees()[1]} }` : `start = { x = ${x}, z = ${z} }`,

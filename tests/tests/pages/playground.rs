@@ -111,6 +111,12 @@ fn what_is_copied_is_flown_and_compiled() {
         let mission = scenario::read(&file, Overrides::default()).expect("a good scenario");
         Recording::of(&mission).unwrap_or_else(|why| panic!("{}: {why}", file.display()));
     }
+    let choices = of_kind("choice");
+    assert!(choices.len() > 1000, "{} choices", choices.len());
+    for file in choices {
+        let read = scenario::read(&file, Overrides::default());
+        read.unwrap_or_else(|why| panic!("{why:#}\n{}", fs::read_to_string(&file).unwrap_or_default()));
+    }
     if !build::is_long("programs in Rust that the playground copies", "playground") {
         return;
     }

@@ -174,8 +174,9 @@ fn known(knowledge: &Knowledge, bits: f64) -> String {
     let (arcs, range) = (minus(&text::arcs(slope_arcs)), minus(&text::range(*intercept)));
     let metres = if intercept.is_some() { " m" } else { "" };
     let (of, doubt) = doubt.map_or((String::new(), String::new()), |doubt| {
-        let entropy = doubt.entropy;
-        let among = format!(" {} hypotheses, entropy {entropy:.2} bits.", doubt.hypotheses);
+        let entropy = text::fixed(doubt.entropy, 2);
+        let many = if doubt.hypotheses == 1 { "hypothesis" } else { "hypotheses" };
+        let among = format!(" {} {many}, entropy {entropy} bits.", doubt.hypotheses);
         (" of the 90 % set".to_owned(), among)
     });
     let bits = minus(&format!("{bits:.2}"));
