@@ -303,7 +303,7 @@ async function asStranger() {
   await turn('Shape');
   const corner = await page.locator('#field [data-key="0"] .grip').boundingBox();
   const box = await page.locator('#field rect.area').boundingBox();
-  const beside = [(corner.x + corner.width + 5 - box.x) / box.width, (corner.y - 5 - box.y) / box.height];
+  const beside = [(corner.x + corner.width + 3 - box.x) / box.width, (corner.y - 3 - box.y) / box.height];
   await after(page, () => drag(page, [beside, [0.8, 0.3], [0.8, 0.7], [0.5, 0.6]]));
   check((await page.locator('#field .grip').count()) === 4, 'a stroke beside a corner bends the shape');
   await page.context().close();
