@@ -58,6 +58,19 @@ function isSeen(page, element) {
   }, element);
 }
 
+/** The charts stay where they are while it plays. */
+async function checkRest(page, what) {
+  const tops = await page.evaluate(() => {
+    const section = document.querySelector('.chapter');
+    const last = section.querySelector('.charts figure:last-child > svg');
+    return chapters[0].flights[0].scenes.slice(0, -1).map((_, k) => {
+      go(k);
+      return last.getBoundingClientRect().top - section.getBoundingClientRect().top;
+    });
+  });
+  check(Math.max(...tops) - Math.min(...tops) < 1, `${what}: the charts move by ${Math.max(...tops) - Math.min(...tops)} px`);
+}
+
 /** Drags the mouse over the field. */
 async function drag(page, places) {
   const [first, ...rest] = await Promise.all(places.map((it) => on(page, it)));
@@ -234,6 +247,7 @@ async function asStranger() {
         return shade.isPointInFill(new DOMPoint(x + width / 2, y + height / 2)) === it.classList.contains('above');
       });
     });
+    await checkRest(page, `the line ${line}`);
     check(isShaded, `the shade of the line ${line} is not that of the labels`);
   }
   check((await page.evaluate(() => getComputedStyle(document.querySelector('#field .of-robot .halo')).fill)) === 'none', 'the robot hides the label where it starts');
@@ -282,17 +296,12 @@ async function asStranger() {
   await checkLooks(page, 'a refusal');
   const own = await after(page, () => page.click('#kinds >> text=Line'));
   check(own.note.includes('the text is written anew') && !(await page.isVisible('#before')), `a text of one's own: ${own.note}`);
+  await checkRest(page, 'labels that may be wrong');
   // In the words of the page: no minus zero, no plural of one.
   await after(page, async () => { await page.uncheck('[name=moves]'); });
   await choose('planner', 'lookahead');
   const wrong = await page.evaluate(() => chapters[0].flights[0].scenes.flatMap((it) => it.told.map(({ text }) => text)).filter((it) => /\b1 hypotheses|[-\u2212]0\.00/.test(it)));
   check(wrong.length === 0 && (await page.evaluate(() => chapters[0].flights[0].scenes.length)) > 10, `words: ${wrong}`);
-  // The charts stay where they are while it plays.
-  const tops = await page.evaluate(() => {
-    const section = document.querySelector('.chapter');
-    return chapters[0].flights[0].scenes.slice(0, -1).map((_, k) => { go(k); return section.querySelector('.charts').getBoundingClientRect().top - section.getBoundingClientRect().top; });
-  });
-  check(Math.max(...tops) - Math.min(...tops) < 1, `the charts move by ${Math.max(...tops) - Math.min(...tops)} px`);
   // Three steps are too few.
   await page.fill('#text', (await toml(page)).replace(/steps = \d+/, 'steps = 3'));
   const few = await after(page, () => page.click('#run-text'));

@@ -131,9 +131,10 @@ function present(chapter) {
   if (!STILL.matches) play();
 }
 
-/** Keeps room for the longest words of a step, so that what is below them stays where it is. */
+/** Keeps room for the longest words of a step and figures of a chart, so that what is below them stays where it is. */
 function reserve() {
-  const words = part('chapter-0').querySelector('.words');
+  const section = part('chapter-0');
+  const words = section.querySelector('.words');
   if (words === null) return;
   const [flight] = chapters[0].flights;
   const length = ({ told }) => told.reduce((sum, it) => sum + it.text.length + 30, 0);
@@ -147,6 +148,16 @@ function reserve() {
   });
   sheet.remove();
   words.style.minHeight = `${Math.ceil(Math.max(0, ...heights))}px`;
+  const charts = CHARTS.filter((it) => (it.of ?? flight.follows) === flight.follows);
+  for (const [k, caption] of section.querySelectorAll('.charts figcaption').entries()) {
+    const value = caption.querySelector('output');
+    const now = value.textContent;
+    const all = flight.scenes.map((it) => charts[k].told(it));
+    value.textContent = all.reduce((long, it) => (it.length > long.length ? it : long), '');
+    caption.style.minHeight = '';
+    caption.style.minHeight = `${caption.offsetHeight}px`;
+    value.textContent = now;
+  }
 }
 
 /** Takes another thing that was made: its drawing, its form and its text show it. Says what else `changed` with it. */
