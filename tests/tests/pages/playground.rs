@@ -77,6 +77,23 @@ fn the_page_works_by_mouse_finger_and_keys() {
     node(&["playground.mjs".as_ref(), file, file.parent().expect("a folder")]);
 }
 
+#[test]
+fn the_planner_alone_is_small_and_finds_a_line() {
+    const TARGET: &str = "wasm32-unknown-unknown";
+    // What that needs is built with the page.
+    if built("the planner alone as a module").is_none() {
+        return;
+    }
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root()).args(["build", "--quiet", "--locked", "-p", "playground"]);
+    cargo.args(["--example", "alone", "--profile", "page", "--target", TARGET]);
+    let run = cargo.args(["--message-format", "json"]).output().expect("cargo starts");
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let said = String::from_utf8_lossy(&run.stdout);
+    let module = said.split('"').rfind(|it| it.ends_with("alone.wasm")).expect("a module");
+    println!("{}", node(&["alone.mjs".as_ref(), module.as_ref()]));
+}
+
 /// `UPDATE_EXPECT=1 cargo test -p tests playground::` draws it anew.
 #[test]
 fn the_picture_of_the_docs_is_what_the_page_shows() {
@@ -115,7 +132,9 @@ fn what_is_copied_is_flown_and_compiled() {
     assert!(choices.len() > 1000, "{} choices", choices.len());
     for file in choices {
         let read = scenario::read(&file, Overrides::default());
-        read.unwrap_or_else(|why| panic!("{why:#}\n{}", fs::read_to_string(&file).unwrap_or_default()));
+        read.unwrap_or_else(|why| {
+            panic!("{why:#}\n{}", fs::read_to_string(&file).unwrap_or_default())
+        });
     }
     if !build::is_long("programs in Rust that the playground copies", "playground") {
         return;
