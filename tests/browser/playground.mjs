@@ -144,6 +144,9 @@ async function byMouse() {
   });
   const image = await after(page, () => page.setInputFiles('#file', { name: 'image.png', mimeType: 'image/png', buffer: Buffer.from(png, 'base64') }));
   check(image.refused === '' && image.said.includes('In truth it lies') && (await toml(page)).includes('threshold = 128'), `an image: ${image.said}${image.refused}`);
+  const large = await after(page, () => page.selectOption('[name=size]', '800 x 500'));
+  check(large.refused === '' && large.said.startsWith('The robot found the boundary'), `an image in a larger field: ${large.said}${large.refused}`);
+  await after(page, () => page.selectOption('[name=size]', '100 x 80'));
   const higher = await after(page, async () => { await page.fill('[name=threshold]', '8'); await page.press('[name=threshold]', 'Tab'); });
   check(higher.refused === '' && (await toml(page)).includes('threshold = 8'), `a threshold: ${higher.said}${higher.refused}`);
   await looks(page, 'raster 1280');

@@ -180,7 +180,7 @@ pub fn plainly(results: &Results) -> String {
     let is_whole = &**reason == "closed";
     match (front, goal, off) {
         (Some(map), ..) if is_whole && front::has_gaps(map) => {
-            format!("The robot found {} of the boundary {took}.", counted(map.pieces, "piece"))
+            format!("The robot found the boundary, but for {:.0} m of it, {took}.", map.gaps.ceil())
         }
         (Some(_), ..) if is_whole => format!("The robot found the boundary {took}."),
         (Some(map), ..) if map.state == State::Followed => {

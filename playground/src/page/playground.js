@@ -263,7 +263,7 @@ async function takeFile(file) {
       const grid = isGrid ? await file.text() : await gridded(file, ground(next));
       if (!/^\s*ncols\s/i.test(grid)) throw new Error(UNREADABLE);
       if (grid.length > MOST_LETTERS) throw new Error(`found ${grid.length} letters, expected ${MOST_LETTERS} at most`);
-      return turn({ ...next, raster: { grid, threshold: isGrid ? 0 : 128 } });
+      return turn({ ...next, raster: { grid, threshold: isGrid ? 0 : 128, isImage: !isGrid } });
     }
     const text = await file.text();
     if (form.isArea.checked) {

@@ -33,11 +33,14 @@ function called(all, value) {
   return all.find(([own]) => own === value)[1];
 }
 
-/** The same drawing in a field of another size. */
+/** The same drawing in a field of another size. An image fills the field; a grid stays where it is. */
 function resized(state, size) {
   const [from, to] = [ground(state), ground({ ...state, size })];
-  const scaled = ([x, z]) => [tidy((x * to.width) / from.width), tidy((z * to.height) / from.height)];
-  return { ...state, size, points: state.points.map(scaled), start: scaled(state.start) };
+  const [wide, high] = [to.width / from.width, to.height / from.height];
+  const scaled = ([x, z]) => [tidy(x * wide), tidy(z * high)];
+  const stretched = (grid) => grid.replace(/^dx (\S+)\ndy (\S+)$/m, (_, dx, dy) => `dx ${Number(dx) * wide}\ndy ${Number(dy) * high}`);
+  const raster = state.raster?.isImage ? { ...state.raster, grid: stretched(state.raster.grid) } : state.raster;
+  return { ...state, size, raster, points: state.points.map(scaled), start: scaled(state.start) };
 }
 
 /** What is flown of what somebody wants, who set `last` last; and what had to change for that: names and words. */
@@ -388,5 +391,5 @@ function checked(found) {
     Number.isSafeInteger(seed) && seed >= 0 && isText(map) && isText(text) && isRaster;
   if (!isSound) return null;
   if (map !== null) mapped(map);
-  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, raster: raster && { grid: raster.grid, threshold: raster.threshold }, text };
+  return { kind, size, points, start, told: told === true, moves: moves === true, vehicle: drives, p, planner, seed, map, raster: raster && { grid: raster.grid, threshold: raster.threshold, isImage: raster.isImage === true }, text };
 }
