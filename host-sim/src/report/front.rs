@@ -62,7 +62,7 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         }
         (State::Closed, _) if has_gaps(record) => {
             format!(
-                "The front was found at {unit} {found}, and the robot came back to where it was found.\n"
+                "The front is closed: it was found at {unit} {found}, and the robot came back there.\n"
             )
         }
         (State::Closed, _) => {
