@@ -104,6 +104,7 @@ async function byMouse() {
     const front = await after(page, () => drag(page, way));
     check((await toml(page)) !== before, `${kind}: the stroke draws nothing`);
     check(front.refused === '' && front.said.includes('In truth it lies 0.'), `${kind}: it is not found: ${front.said}${front.refused}`);
+    check(/^The robot found the boundary(, but for \d+ m of it,)? with \d+ labels and \d+ motions\. In truth/.test(front.said), `${kind}: ${front.said}`);
     await page.click('#last');
     await looks(page, `${kind} 1280`);
   }

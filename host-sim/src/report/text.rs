@@ -8,7 +8,6 @@ use planner_core::watch::{Alarm, Suspect};
 use crate::mission::algorithm::Algorithm;
 use crate::mission::allowance::{ToleranceRecord, tidy};
 use crate::mission::from_nothing::SeekRecord;
-use crate::mission::map::State;
 use crate::mission::results::{
     AUDIT, AlarmRecord, End, FitRecord, LineRecord, PTold, ReliabilityRecord, Results,
     SampleRecord, Start, StepResult,
@@ -183,7 +182,7 @@ pub fn plainly(results: &Results) -> String {
             format!("The robot found the boundary, but for {:.0} m of it, {took}.", map.gaps.ceil())
         }
         (Some(_), ..) if is_whole => format!("The robot found the boundary {took}."),
-        (Some(map), ..) if map.state == State::Followed => {
+        (Some(map), ..) if map.found.is_some() => {
             format!("The robot found a part of the boundary {took}: {why}.")
         }
         (None, Some(goal), _) if goal.is_met => format!("The robot found the boundary {took}."),

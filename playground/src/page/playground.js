@@ -75,12 +75,12 @@ function landed({ number, isFlown, notes, chapter }) {
   present(chapter);
   boundary = chapter.flights[0].boundary.flatMap((it) => it.ways);
   field.draw();
-  const { scenes, ended } = chapter.flights[0];
+  const { scenes, ended, follows } = chapter.flights[0];
   const told = [...ended, ...scenes.at(-1).told];
   const of = (heading) => told.find((it) => it.of === heading)?.text ?? '';
   const truly = of('Map').split('\n').find((it) => it.startsWith('In truth')) ?? '';
   const [plain, ...more] = notes.split('\n');
-  const why = plain.includes(': ') ? '' : of('Ended');
+  const why = follows || plain.includes(': ') ? '' : of('Ended');
   outcome = [plain, [why, of('Estimate'), truly, ...more].filter(Boolean).join(' ')];
   tellOutcome('');
   if (brings && NARROW.matches) part('chapter-0').scrollIntoView({ behavior: STILL.matches ? 'auto' : 'smooth' });
