@@ -1,7 +1,7 @@
 //! The planner alone as a WebAssembly module: look-ahead for a rover in a rectangle, where labels may be wrong.
 //!
-//! The memory is the caller's: a planner begins at a place with room for its bytes. Places are x, z in metres, poses
-//! also a heading in radians. `cargo build -p playground --example alone --profile page --target wasm32-unknown-unknown`
+//! The caller owns the memory, and `begin` writes a planner there. Places are x and z in metres. Poses have a heading in
+//! radians too. `cargo build -p playground --example alone --profile page --target wasm32-unknown-unknown`
 
 #![cfg(target_family = "wasm")]
 

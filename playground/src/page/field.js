@@ -148,7 +148,7 @@ function editor(svg, { made, changed, done, seen }) {
       const words = `${name}: x ${figure(where[0], 2)}, z ${figure(where[1], 2)} metres`;
       const handle = add(svg, 'g', { class: `handle ${key === 'start' ? 'of-robot' : ''}`, 'data-key': key, tabindex: 0, role: 'button', 'aria-label': words, 'aria-describedby': 'handle-keys', transform: `translate(${x.toFixed(1)} ${y.toFixed(1)})` });
       const isSmall = state.points.length > 12 && key !== 'start';
-      // What can be gripped is little more than what is seen, so that a stroke may begin beside it.
+      // The grip is hardly larger than its picture, so a stroke can begin beside it.
       add(handle, 'circle', { class: 'reach', r: FINGER.matches ? (isSmall ? 8 : 11) : isSmall ? 6 : 9 });
       if (key === 'start') {
         add(handle, 'circle', { class: 'halo', r: 8 });
@@ -182,7 +182,7 @@ function truthOn(svg, state, at, seen) {
     return [px + ((px - qx) / length) * far, pz + ((pz - qz) / length) * far];
   };
   const whole = kind === 'shape' ? sorted : [beyond(sorted[0], sorted[1]), ...sorted, beyond(sorted.at(-1), sorted.at(-2))];
-  // It is closed beyond the corners on its left, counter-clockwise: its ends may lie above or below the field.
+  // Corners far away close it counter-clockwise. Its ends may lie above or below the field.
   const above = kind === 'shape' ? whole : [...whole, [2 * far, whole.at(-1)[1]], [2 * far, 2 * far], [-2 * far, 2 * far], [-2 * far, whole[0][1]]];
   add(svg, 'path', { class: 'certain above', d: through(above.map(at), true) });
   add(svg, 'path', { class: 'truth', d: through(whole.map(at), kind === 'shape') });

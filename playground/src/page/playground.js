@@ -4,7 +4,7 @@ const part = (id) => document.getElementById(id);
 const form = part('form');
 const acts = Object.fromEntries(['run', 'stop', 'again', 'run-text'].map((id) => [id, part(id)]));
 let made = begun('line');
-/** The names of what somebody has set: it stays whatever is drawn. */
+/** The names of what the user has set. It stays when another boundary is drawn. */
 let set = new Set();
 /** What the mission that is shown came to: a sentence, and more. */
 let outcome = ['', ''];
@@ -36,7 +36,7 @@ onmessage = async ({ data: { module, number, text, files } }) => {
 const WORK_AT = URL.createObjectURL(new Blob([WORK], { type: 'text/javascript' }));
 const MODULE = WebAssembly.compile(Uint8Array.from(atob(part('module').textContent), (it) => it.charCodeAt(0)));
 
-/** Flies what is made. A mission that is under way is given up. `brings` the picture into sight, where it is below. */
+/** Flies what is made, and ends a mission that is under way. `brings`: then the page scrolls to a picture below. */
 async function fly(brings = false) {
   if (flying !== null) halt();
   const number = (fly.count = (fly.count ?? 0) + 1);
@@ -86,7 +86,7 @@ function landed({ number, isFlown, notes, chapter }) {
   if (brings && NARROW.matches) part('chapter-0').scrollIntoView({ behavior: STILL.matches ? 'auto' : 'smooth' });
 }
 
-/** No new mission: the one before is still shown. */
+/** Says that the page still shows the mission before. */
 function keep() {
   tellOutcome(isOpen ? 'The run before: ' : '');
   part('before').hidden = !isOpen;
@@ -100,14 +100,14 @@ function tellOutcome(before) {
   part('before').hidden = true;
 }
 
-/** Says what was done, within sight. */
+/** Says in the bar what was done. */
 function note(words) {
   part('note').textContent = words;
   part('refused').textContent = '';
   part('close').hidden = words === '';
 }
 
-/** Says why something is not done, within sight. */
+/** Says in the bar why something is not done. */
 function refuse(why) {
   part('note').textContent = '';
   part('refused').textContent = why;
@@ -160,7 +160,7 @@ function reserve() {
   }
 }
 
-/** Takes another thing that was made: its drawing, its form and its text show it. Says what else `changed` with it. */
+/** Takes another state: the drawing, the form and the text show it, and the bar says what else `changed`. */
 function change(next, changed = []) {
   if (made.text !== null && next.text === null) changed.push(['text', 'the text is written anew, without what you wrote']);
   if (changed.length > 0) note(`Changed: ${changed.map(([, words]) => words).join('; ')}.`);
@@ -197,14 +197,14 @@ function take(next, { changed = [], brings = false } = {}) {
   fly(brings);
 }
 
-/** Turns to another boundary with all that was set and can stay. `more` is said beside it. */
+/** Turns to another boundary and keeps what the user has set. The bar says `more` beside what changed. */
 function turn(next, more = '') {
   const { state, changed } = turned(made, next, set);
   take(state, { changed });
   if (more !== '') note(`${part('note').textContent} ${more}`.trim());
 }
 
-/** What one begins with who turns to another boundary, in a field of the size that was set. */
+/** The first state of a kind of boundary, in a field of the size that the user has set. */
 function fresh(kind) {
   return begun(kind, made.seed, set.has('size') ? made.size : undefined);
 }
@@ -303,7 +303,8 @@ for (const button of document.querySelectorAll('[data-copy]')) {
     if (button.dataset.copy === 'link') history.replaceState(null, '', text);
     try {
       await navigator.clipboard.writeText(text);
-      note(`Copied: ${words}${part('text').value.trim() === toml(made).trim() ? '' : ' What you changed in the text is not in it: press Run this text first.'}`);
+      const lacks = button.dataset.copy === 'rust' && made.text !== null ? ' It has none of your changes to the text.' : '';
+      note(`Copied: ${words}${lacks}${part('text').value.trim() === toml(made).trim() ? '' : ' What you changed in the text is not in it: press Run this text first.'}`);
     } catch {
       part('text').value = text;
       part('text').select();

@@ -16,7 +16,7 @@ const SIZES = ['20 x 20', '50 x 50', '100 x 80', '200 x 150', '800 x 500'];
 const TOLD = [[0.1, 0.05], [0.1, 0.4], [0.9, 0.8], [0.9, 0.25]];
 const START = [0.1, 0.05];
 
-/** Planners that find a straight line alone, and those that go on whatever the vehicle can do. */
+/** Planners of straight lines alone, and planners whose vehicle must turn on the spot. */
 const OF_LINES = ['lookahead', 'cfc', 'scc'];
 const HEEDLESS = ['lawnmower', 'random'];
 
@@ -43,7 +43,7 @@ function resized(state, size) {
   return { ...state, size, raster, points: state.points.map(scaled), start: scaled(state.start) };
 }
 
-/** What is flown of what somebody wants, who set `last` last; and what had to change for that: names and words. */
+/** A state that the simulator can fly, and what had to change for it: names and words. The user set `last` last. */
 function allowed(state, last) {
   const changed = [];
   let { planner, vehicle } = state;
@@ -70,7 +70,7 @@ function allowed(state, last) {
   return { state: { ...state, planner, vehicle }, changed };
 }
 
-/** Another boundary, with all that somebody has `set` and that can stay; and what cannot, in words. */
+/** Another boundary. It keeps what the user has `set`, and returns what could not stay: names and words. */
 function turned(old, next, set) {
   const [from, to] = [ground(old), ground(next)];
   const values = ['planner', 'vehicle', 'p', 'told', 'moves'].filter((it) => set.has(it)).map((it) => [it, old[it]]);
@@ -82,12 +82,12 @@ function turned(old, next, set) {
   return { state, changed: changed.filter(([name]) => set.has(name)) };
 }
 
-/** Whether another seed leads to another mission. */
+/** Whether another seed changes the mission. */
 function isRandom({ p, planner, kind, map, raster, text }) {
   return text !== null || p !== '1' || planner === 'random' || (kind === 'coast' && map === null && raster === null);
 }
 
-/** The same with another seed. A text of one's own keeps all else. */
+/** The same with another seed. The user's own text keeps all else. */
 function reseeded(state) {
   const seed = state.seed + 1;
   if (state.text === null) return { ...state, seed };
