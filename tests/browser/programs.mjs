@@ -2,10 +2,10 @@
 //
 //   node programs.mjs FOLDER
 //
-// saves FOLDER/NAME.scenario, NAME.rs and NAME.py; and as NUMBER.choice what comes of each choice of boundary, planner,
-// sensor and vehicle.
+// saves FOLDER/NAME.scenario, NAME.rs and NAME.py; and as choices/NUMBER.scenario what comes of each choice of
+// boundary, planner, sensor and vehicle.
 
-import { readFileSync, writeFileSync } from 'node:fs';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 const [folder] = process.argv.slice(2);
@@ -27,6 +27,12 @@ for (const [name, state] of Object.entries(states)) {
   for (const [ending, program] of [['scenario', toml], ['rs', rust], ['py', python]]) writeFileSync(join(folder, `${name}.${ending}`), program(state));
 }
 writeFileSync(join(folder, 'area.geojson'), lake);
+// Shapes, coasts and lakes take long to read.
+const sensors = [SENSORS[0], SENSORS.at(-1)];
 const choices = Object.keys(KINDS).map((kind) => states[kind]).concat(states.lake).flatMap((state) =>
-  PLANNERS.flatMap(([planner]) => SENSORS.flatMap(([p]) => VEHICLES.flatMap(([vehicle]) => [true, false].map((told) => ({ ...state, planner, p, vehicle, told }))))));
-for (const [number, choice] of choices.entries()) writeFileSync(join(folder, `${number}.choice`), toml(allowed(choice, number % 7 < 3 ? 'vehicle' : 'planner').state));
+  PLANNERS.flatMap(([planner]) => sensors.flatMap(([p]) => VEHICLES.flatMap(([vehicle]) => (state.kind === 'line' || state.kind === 'bend' ? [true, false] : [true]).map((told) => ({ ...state, planner, p, vehicle, told }))))));
+const beside = join(folder, 'choices');
+rmSync(beside, { recursive: true, force: true });
+mkdirSync(beside);
+for (const [number, choice] of choices.entries()) writeFileSync(join(beside, `${number}.scenario`), toml(allowed(choice, number % 7 < 3 ? 'vehicle' : 'planner').state));
+writeFileSync(join(beside, 'area.geojson'), lake);
