@@ -23,7 +23,6 @@ pub mod paper;
 mod patches;
 mod reference;
 mod replay;
-mod rows_file;
 mod run;
 mod size;
 mod told;

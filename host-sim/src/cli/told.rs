@@ -11,8 +11,8 @@ use crate::campaign::ensemble::{Campaign, Measure, Measured};
 use crate::campaign::rows::RowWriter;
 use crate::cli::campaign_flags::Campaigns;
 use crate::cli::format::Format;
-use crate::cli::rows_file::RowsFile;
-use crate::output::file::json;
+use crate::output::file::{Output, json};
+use crate::output::partial::Begin;
 use crate::report::curves::Curves;
 use crate::report::{campaign as tables, comparison};
 
@@ -81,7 +81,9 @@ fn fly<M: Measure, S>(
     }
     let planners = campaigns.planners();
     let header = planners.header::<M::Checkpoint>()?;
-    let file = csv.map(|path| RowsFile::open(path, &header)).transpose()?;
+    let goes_on = "--from goes on with the fields that are missing";
+    let begin = Begin { holds: "rows", goes_on, resume: false };
+    let file = csv.map(|path| Output::growing(path, &header, begin)).transpose()?;
     let mut writer = file.map(|file| RowWriter::new(file, &planners));
     let mut summaries = Vec::new();
     for (number, campaign) in campaigns.of_each.iter().enumerate() {

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, Error, Result, anyhow, bail};
+use anyhow::{Context as _, Result, anyhow, bail};
 use serde::Serialize;
 use tempfile::NamedTempFile;
 
@@ -12,7 +12,8 @@ use crate::output::ending;
 use crate::output::interruption::unfinished;
 use crate::output::kind;
 use crate::output::notes::mention;
-use crate::output::place::Place;
+use crate::output::partial::{Begin, Partial};
+use crate::output::place::{Place, hand_on_permissions, refusal};
 
 /// A record as a line of JSON.
 ///
@@ -64,6 +65,8 @@ pub struct Output {
 enum Destination {
     /// Begun beside its place, and moved there when it is complete.
     File { place: PathBuf, begun: NamedTempFile },
+    /// The same, and an interruption leaves what is there of it.
+    Growing(Partial),
     /// Written through.
     Stream(File),
 }
@@ -126,15 +129,6 @@ pub fn place_for(path: &Path) -> Result<Place> {
     Place::of(path).map_err(|error| refusal(path, &error))
 }
 
-/// Why nothing can be written there.
-pub(crate) fn refusal(path: &Path, error: &io::Error) -> Error {
-    anyhow!(
-        "{}: found {}, expected a place to write a file",
-        path.display(),
-        kind::unwritten(error)
-    )
-}
-
 /// Makes a folder and those above it.
 ///
 /// # Errors
@@ -157,6 +151,22 @@ impl Output {
         Ok(Self { name: path.display().to_string(), to })
     }
 
+    /// A file that grows under a header, perhaps for hours, or a stream.
+    ///
+    /// # Errors
+    /// Names the file that is there already, or that cannot be written.
+    pub fn growing(path: &Path, header: &str, begin: Begin) -> Result<Self> {
+        let place = place_for(path)?;
+        if place.is_stream() {
+            let mut output = Self::at(path, &place).map_err(|error| refusal(path, &error))?;
+            output.write_all(header.as_bytes())?;
+            return Ok(output);
+        }
+        let partial = Partial::open(path, &place, header, begin)?;
+        partial.announce();
+        Ok(Self { name: path.display().to_string(), to: Destination::Growing(partial) })
+    }
+
     /// Writes all of it, and replaces a file that exists.
     ///
     /// # Errors
@@ -177,6 +187,7 @@ impl Output {
     pub fn complete(self) -> Result<()> {
         match self.to {
             Destination::File { place, begun } => replace(&place, begun).context(self.name),
+            Destination::Growing(partial) => partial.complete(),
             Destination::Stream(_) => Ok(()),
         }
     }
@@ -187,6 +198,7 @@ impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
             Destination::File { begun, .. } => begun.write(bytes),
+            Destination::Growing(partial) => partial.write(bytes),
             Destination::Stream(stream) => match stream.write(bytes) {
                 // Whoever reads may stop early.
                 Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(bytes.len()),
@@ -207,9 +219,4 @@ fn replace(place: &Path, begun: NamedTempFile) -> io::Result<()> {
     unfinished.files.remove(begun.path());
     begun.persist(place)?;
     Ok(())
-}
-
-/// Gives a file the permissions of the one that it replaces.
-pub(crate) fn hand_on_permissions(to: &Path, replaced: &Path) -> io::Result<()> {
-    fs::metadata(replaced).map_or(Ok(()), |it| fs::set_permissions(to, it.permissions()))
 }

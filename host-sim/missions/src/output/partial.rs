@@ -8,9 +8,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, Result, bail};
 
-use crate::output::file::{hand_on_permissions, refusal};
 use crate::output::interruption::unfinished;
-use crate::output::place::Place;
+use crate::output::place::{Place, hand_on_permissions, refusal};
 
 /// A file that is not complete. When this is dropped the file stays, unless this run created it and wrote only a
 /// header.

@@ -4,6 +4,10 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
+use anyhow::{Error, anyhow};
+
+use crate::output::kind;
+
 /// Symbolic links that a path may lead through, as many as Linux follows.
 const MOST_LINKS: usize = 40;
 
@@ -81,6 +85,20 @@ impl Place {
             None => OpenOptions::new().write(true).open(&self.path),
         }
     }
+}
+
+/// Why nothing can be written at a path.
+pub(crate) fn refusal(path: &Path, error: &io::Error) -> Error {
+    anyhow!(
+        "{}: found {}, expected a place to write a file",
+        path.display(),
+        kind::unwritten(error)
+    )
+}
+
+/// Gives a file the permissions of the one that it replaces.
+pub(crate) fn hand_on_permissions(to: &Path, replaced: &Path) -> io::Result<()> {
+    fs::metadata(replaced).map_or(Ok(()), |it| fs::set_permissions(to, it.permissions()))
 }
 
 fn folder(path: &Path) -> &Path {
