@@ -6,20 +6,20 @@ use host_sim::campaign::calibration::{Calibrated, Summary};
 use host_sim::campaign::ensemble::Campaign;
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
+use host_sim::mission::baseline::motion;
 use host_sim::mission::definition::{HYPOTHESES, Mission, Table};
 use host_sim::mission::given::CAPACITY;
 use host_sim::mission::names::FanName;
 use host_sim::mission::read_out::LEVEL;
 use host_sim::world::noise::{Extent, Flipped, NoiseModel, limit};
-use host_sim::world::robot::Ideal;
+use host_sim::world::robot::{Ideal, Robot as _};
 use nalgebra::Point2;
-use planner_core::dynamics::{Action, Control};
+use planner_core::dynamics::Action;
 use planner_core::lattice::LIMIT;
 use planner_core::link::message::MissionArea;
-use planner_core::robot::Body as _;
 use planner_core::{
-    AnyReliability, Heading, Label, Motion, Noise, Plan, Planner, Policy, Pose, PosteriorView,
-    Prior, Reliability, Sample, Scc, Site, Tolerance, Unicycle,
+    AnyReliability, Heading, Label, Noise, Plan, Planner, Policy, Pose, PosteriorView, Prior,
+    Reliability, Sample, Scc, Site, Tolerance, Unicycle,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -83,18 +83,6 @@ fn a_vote_is_the_sum_over_hypotheses_computed_the_slow_way() {
     assert!(elections > cases(80, 400), "{elections}");
 }
 
-/// A motion that wants a label.
-const SOME_MOTION: Motion = Motion {
-    stage: None,
-    recovery: None,
-    action: Action(0),
-    control: Control { distance_m: 0.0, turn_rad: 0.0 },
-    target: Pose { site: Site::ORIGIN, heading: Heading(0) },
-    wants_label: true,
-    examined: 0,
-    proven: true,
-};
-
 #[test]
 fn the_world_flips_labels_where_it_should_and_as_often() {
     let mission = standard_field::standard(1, 2, Algorithm::Scc, 1);
@@ -119,8 +107,8 @@ fn the_world_flips_labels_where_it_should_and_as_often() {
             let at = Point2::new(metres(), metres());
             let site = Site::try_from(at).expect("near");
             let mut pose = mission.start;
-            let motion = Motion { target: Pose { site, ..pose }, ..SOME_MOTION };
-            let wrong = robot.perform(&motion, &mut pose) != Ok(Some(world.reading(site)));
+            let motion = motion(&Unicycle::paper(), pose, Action(0), Pose { site, ..pose });
+            let wrong = robot.perform(&motion, &mut pose) != Some(world.reading(site));
             let near = |s: &Sample| (Point2::<f64>::from(s.site) - at).norm();
             let safe = match extent {
                 Extent::OutsideBalls(radius) => given.iter().any(|s| near(s) < radius - 1e-3),

@@ -5,9 +5,8 @@ use std::sync::Mutex;
 
 use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
-use host_sim::world::robot::Ideal;
+use host_sim::world::robot::{Ideal, Robot as _};
 use planner_core::link::message::MissionArea;
-use planner_core::robot::Body as _;
 use planner_core::{Plan, Planner as _, Pose, Recovery, Unicycle};
 use rayon::prelude::*;
 use tests::cases;
@@ -46,7 +45,7 @@ fn every_plan_is_what_trying_all_actions_would_make_it() {
             }
             *rungs.lock().expect("no panic").entry(format!("{rung:?}")).or_insert(0) += 1;
             let Plan::Move(motion) = plan else { break };
-            let Ok(reading) = robot.perform(&motion, &mut pose);
+            let reading = robot.perform(&motion, &mut pose);
             planner.observe(pose, reading).expect("labels are true");
         }
     });

@@ -21,7 +21,7 @@ pub fn fly(mission: &Mission, actions: &[Action]) -> Result<Recording> {
     for &action in actions {
         let Some(target) = mission.vehicle.target(pose, action) else { break };
         let motion = Motion { examined: 0, ..motion(&mission.vehicle, pose, action, target) };
-        let Ok(reading) = robot.perform(&motion, &mut pose);
+        let reading = robot.perform(&motion, &mut pose);
         let seen = reading.map_or(Ok(()), |reading| belief.observe(pose.site, reading));
         seen.map_err(|refused| recorder.refusal(&refused))?;
         recorder.take(&Step { motion, pose, reading, alarm: None }, robot.true_pose(), &*belief);

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
 use crate::world::on_the_way::Way;
-use crate::world::robot::{Glimpse, Robot, body};
+use crate::world::robot::{Glimpse, Robot};
 
 /// Gaussian errors are cut off at this many standard deviations.
 pub const CUT: f64 = 3.0;
@@ -42,8 +42,6 @@ impl Erring {
         Self { world, errors, rng, truth }
     }
 }
-
-body!(Erring);
 
 impl Robot for Erring {
     fn true_pose(&self) -> Option<Pose> {

@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
 use crate::world::on_the_way::Way;
-use crate::world::robot::{Glimpse, Robot, body};
+use crate::world::robot::{Glimpse, Robot};
 
 /// A fault of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,8 +121,6 @@ fn before([start, end]: [Point2<f64>; 2], metres: f64) -> Site {
     Site::try_from(place).expect("it lies between two sites")
 }
 
-body!(Failing);
-
 impl Robot for Failing {
     fn true_pose(&self) -> Option<Pose> {
         self.body.true_pose()
@@ -153,7 +151,6 @@ impl Robot for Failing {
 #[cfg(test)]
 mod tests {
     use planner_core::dynamics::{Action, Control};
-    use planner_core::robot::Body as _;
     use planner_core::{Heading, Line};
     use rand::SeedableRng as _;
 
@@ -183,7 +180,7 @@ mod tests {
                 examined: 0,
                 proven: true,
             };
-            let Ok(reading) = robot.perform(&motion, &mut pose);
+            let reading = robot.perform(&motion, &mut pose);
             if wants_label {
                 readings.push(reading.map(Reading::sign));
             } else {

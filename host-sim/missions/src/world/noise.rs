@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::world::World;
 use crate::world::on_the_way::Way;
-use crate::world::robot::{Glimpse, Robot, body};
+use crate::world::robot::{Glimpse, Robot};
 
 /// How labels are flipped.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,8 +57,6 @@ pub struct Flipped {
     /// The random number generator.
     pub rng: ChaCha8Rng,
 }
-
-body!(Flipped);
 
 impl Robot for Flipped {
     fn true_pose(&self) -> Option<Pose> {

@@ -1,19 +1,16 @@
 //! Simulated robots.
 
-use std::convert::Infallible;
-
-use planner_core::robot::Body;
 use planner_core::{Motion, Pose, Reading, Site};
 
 use crate::world::World;
 use crate::world::on_the_way::Way;
 
 /// A robot that cannot fail.
-pub trait Robot: Body<Error = Infallible> {
+pub trait Robot {
     /// Its true pose; `None` if the pose that it reports is the true one.
     fn true_pose(&self) -> Option<Pose>;
 
-    /// As [`Body::perform`], and passes on what it senses on the way, in order.
+    /// As [`Body::perform`](planner_core::robot::Body::perform), and passes on what it senses on the way, in order.
     fn travel(
         &mut self,
         motion: &Motion,
@@ -21,6 +18,11 @@ pub trait Robot: Body<Error = Infallible> {
         way: Way,
         pass: &mut dyn FnMut(Glimpse),
     ) -> Option<Reading>;
+
+    /// The same without readings on the way.
+    fn perform(&mut self, motion: &Motion, pose: &mut Pose) -> Option<Reading> {
+        self.travel(motion, pose, Way::END, &mut |_| ())
+    }
 }
 
 /// What a robot senses on the way of a motion.
@@ -34,32 +36,11 @@ pub struct Glimpse {
     pub reading: Option<Reading>,
 }
 
-/// A [`Body`] by its [`Robot::travel`], without readings on the way.
-macro_rules! body {
-    ($robot:ty) => {
-        impl planner_core::robot::Body for $robot {
-            type Error = std::convert::Infallible;
-
-            fn perform(
-                &mut self,
-                motion: &planner_core::Motion,
-                pose: &mut planner_core::Pose,
-            ) -> Result<Option<planner_core::Reading>, std::convert::Infallible> {
-                let way = $crate::world::on_the_way::Way::END;
-                Ok($crate::world::robot::Robot::travel(self, motion, pose, way, &mut |_| ()))
-            }
-        }
-    };
-}
-pub(super) use body;
-
 /// A robot that reaches the target of every motion and reads the true label there.
 pub struct Ideal {
     /// What it moves in.
     pub world: World,
 }
-
-body!(Ideal);
 
 impl Robot for Ideal {
     fn true_pose(&self) -> Option<Pose> {
