@@ -1,12 +1,15 @@
 //! The schema of a type, written down while values of it are read: names and order of fields and variants.
 
-use std::cell::RefCell;
 use std::collections::{BTreeMap, VecDeque};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 
 use planner_core::link::message::{CELL_BYTES, MOST_CORNERS, MOST_GIVEN};
-use serde::de::{DeserializeSeed, EnumAccess, SeqAccess, VariantAccess, Visitor};
-use serde::{Deserialize, Deserializer};
+use serde::de::value::Error;
+use serde::de::{
+    DeserializeOwned, DeserializeSeed, EnumAccess, IntoDeserializer as _, SeqAccess, VariantAccess,
+    Visitor,
+};
+use serde::{Deserializer, forward_to_deserialize_any};
 
 /// What a tuple is called in the schema, by the field that has it.
 const TUPLES: [(&str, &[&str]); 5] = [
@@ -39,11 +42,6 @@ pub(crate) struct Schema {
     types: BTreeMap<String, Type>,
     /// The type of the value that was read last.
     read: String,
-    /// The variant that was read last, and those of the choices that are being read.
-    variant: usize,
-    chosen: Vec<usize>,
-    /// The types of the parts of what is being read.
-    parts: Vec<Vec<String>>,
 }
 
 impl Schema {
@@ -150,123 +148,123 @@ fn comments(text: &str) -> BTreeMap<(String, String), String> {
     comments
 }
 
-/// Reads a value, and writes its type down.
-pub(crate) fn read<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
-    of: D,
-    schema: &RefCell<Schema>,
-) -> Result<T, D::Error> {
-    T::deserialize(Traced { of, schema, field: "", names: &[] })
+/// Reads a value that is all of some bytes, and writes its type down. It reads them by itself, so postcard is checked too.
+pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8], schema: &mut Schema) {
+    let mut reader = Reader { rest: bytes, schema, field: "" };
+    let value = T::deserialize(&mut reader);
+    assert!(value.is_ok() && reader.rest.is_empty(), "{:?}, left: {:?}", value.err(), reader.rest);
 }
 
-/// A reader, a visitor, a seed or what gives access to parts, which writes down what passes through it.
-struct Traced<'a, T> {
-    of: T,
-    schema: &'a RefCell<Schema>,
+struct Reader<'a> {
+    rest: &'a [u8],
+    schema: &'a mut Schema,
     /// The field that is read.
     field: &'static str,
-    /// The fields of the struct that is read, or the variants of the choice.
-    names: &'static [&'static str],
 }
 
-impl<'a, T> Traced<'a, T> {
-    fn with<U>(&self, of: U) -> Traced<'a, U> {
-        Traced { of, schema: self.schema, field: self.field, names: self.names }
+impl Reader<'_> {
+    fn bytes<const N: usize>(&mut self) -> [u8; N] {
+        let (first, rest) = self.rest.split_first_chunk().expect("more bytes");
+        self.rest = rest;
+        *first
     }
 
-    /// The same of what has no name of its own.
-    fn nameless<U>(&self, of: U) -> Traced<'a, U> {
-        Traced { of, schema: self.schema, field: "", names: &[] }
+    fn varint(&mut self) -> u64 {
+        let mut value = 0;
+        for shift in (0..).step_by(7) {
+            let [byte] = self.bytes();
+            value |= u64::from(byte & 0x7f) << shift;
+            if byte < 0x80 {
+                break;
+            }
+        }
+        value
     }
 
-    fn is(&self, name: &str) {
-        name.clone_into(&mut self.schema.borrow_mut().read);
+    /// A number whose sign is its last bit.
+    fn signed(&mut self) -> i64 {
+        let value = self.varint();
+        (value >> 1) as i64 ^ -((value & 1) as i64)
     }
 
-    /// Reads what has parts, and returns their types.
-    fn parts<R, E>(&self, read: impl FnOnce() -> Result<R, E>) -> Result<(R, Vec<String>), E> {
-        self.schema.borrow_mut().parts.push(Vec::new());
-        let value = read()?;
-        Ok((value, self.schema.borrow_mut().parts.pop().unwrap_or_default()))
+    fn is(&mut self, name: &str) {
+        name.clone_into(&mut self.schema.read);
+    }
+
+    /// Reads what has so many parts, and returns their types. They have names, or all that of a list.
+    fn parts<'de, V: Visitor<'de>>(
+        &mut self,
+        (left, names, field): (usize, &'static [&'static str], &'static str),
+        visitor: V,
+    ) -> Result<(V::Value, Vec<String>), Error> {
+        let mut parts = Parts { reader: self, left, names, field, types: Vec::new() };
+        let value = visitor.visit_seq(&mut parts)?;
+        Ok((value, parts.types))
     }
 }
 
 macro_rules! plain {
-    ($($read:ident $name:literal),*) => {
-        $(fn $read<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-            self.is($name);
-            self.of.$read(visitor)
+    ($($read:ident $visit:ident $name:literal $reader:ident => $value:expr,)*) => {
+        $(fn $read<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+            let $reader = self;
+            $reader.is($name);
+            visitor.$visit($value)
         })*
     };
 }
 
-macro_rules! never {
-    ($($read:ident),*) => {
-        $(fn $read<V: Visitor<'de>>(self, _: V) -> Result<V::Value, D::Error> {
-            unreachable!("{}: {}", self.field, stringify!($read))
-        })*
-    };
-}
-
-impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
-    type Error = D::Error;
+impl<'de> Deserializer<'de> for &mut Reader<'_> {
+    type Error = Error;
 
     // The one u64 is a `usize`, which has 32 bits on a chip.
-    plain!(deserialize_bool "bool", deserialize_u8 "u8", deserialize_u16 "u16", deserialize_u32 "u32",
-        deserialize_u64 "u32", deserialize_i32 "i32", deserialize_i64 "i64", deserialize_f32 "f32");
-    never!(
-        deserialize_any,
-        deserialize_i8,
-        deserialize_i16,
-        deserialize_f64,
-        deserialize_char,
-        deserialize_str,
-        deserialize_string,
-        deserialize_bytes,
-        deserialize_byte_buf,
-        deserialize_unit,
-        deserialize_map,
-        deserialize_ignored_any
+    plain!(
+        deserialize_bool visit_bool "bool" it => it.bytes() == [1],
+        deserialize_u8 visit_u8 "u8" it => u8::from_le_bytes(it.bytes()),
+        deserialize_u16 visit_u16 "u16" it => it.varint() as u16,
+        deserialize_u32 visit_u32 "u32" it => it.varint() as u32,
+        deserialize_u64 visit_u64 "u32" it => it.varint(),
+        deserialize_i32 visit_i32 "i32" it => it.signed() as i32,
+        deserialize_i64 visit_i64 "i64" it => it.signed(),
+        deserialize_f32 visit_f32 "f32" it => f32::from_le_bytes(it.bytes()),
     );
+    forward_to_deserialize_any! {
+        i8 i16 f64 char str string bytes byte_buf unit unit_struct map identifier ignored_any
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
+        unreachable!("{}", self.field)
+    }
 
     fn is_human_readable(&self) -> bool {
-        self.of.is_human_readable()
+        false
     }
 
-    fn deserialize_identifier<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        let visitor = self.with(visitor);
-        self.of.deserialize_identifier(visitor)
-    }
-
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        let (schema, visitor) = (self.schema, self.with(visitor));
-        let value = self.of.deserialize_option(visitor)?;
-        let mut schema = schema.borrow_mut();
-        schema.read = format!("optional {}", schema.read);
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        self.is(UNKNOWN);
+        let value = match self.bytes() {
+            [0] => visitor.visit_none()?,
+            _ => visitor.visit_some(&mut *self)?,
+        };
+        self.schema.read = format!("optional {}", self.schema.read);
         Ok(value)
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, D::Error> {
-        let inner = Traced { names: &[], ..self.with(visitor) };
-        let told = self.with(());
-        let (value, types) = told.parts(|| self.of.deserialize_seq(inner))?;
-        let most = LISTS.iter().find(|(name, _)| *name == told.field).expect(told.field).1;
-        let of = types.first().map_or(UNKNOWN, String::as_str);
-        told.is(&format!("list {most} {of}"));
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        let (field, len) = (self.field, self.varint() as usize);
+        let (value, types) = self.parts((len, &[], field), visitor)?;
+        let most = LISTS.iter().find(|(name, _)| *name == field).expect(field).1;
+        self.is(&format!("list {most} {}", types.first().map_or(UNKNOWN, String::as_str)));
         Ok(value)
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(
-        self,
-        len: usize,
-        visitor: V,
-    ) -> Result<V::Value, D::Error> {
+    fn deserialize_tuple<V: Visitor<'de>>(self, len: usize, visitor: V) -> Result<V::Value, Error> {
+        let field = self.field;
         // Its own tuples have no name.
-        let (told, inner) = (self.with(()), self.nameless(visitor));
-        let (value, types) = told.parts(|| self.of.deserialize_tuple(len, inner))?;
+        let (value, types) = self.parts((len, &[], ""), visitor)?;
         let of = format!("[{}]", types.join(" "));
-        match TUPLES.iter().find(|(_, fields)| fields.contains(&told.field)) {
-            Some((name, _)) => told.schema.borrow_mut().define(name, Type::Alias(of)),
-            None => told.is(&of),
+        match TUPLES.iter().find(|(_, fields)| fields.contains(&field)) {
+            Some((name, _)) => self.schema.define(name, Type::Alias(of)),
+            None => self.is(&of),
         }
         Ok(value)
     }
@@ -276,29 +274,20 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
         _: &'static str,
         len: usize,
         visitor: V,
-    ) -> Result<V::Value, D::Error> {
+    ) -> Result<V::Value, Error> {
         self.deserialize_tuple(len, visitor)
-    }
-
-    fn deserialize_unit_struct<V: Visitor<'de>>(
-        self,
-        name: &'static str,
-        _: V,
-    ) -> Result<V::Value, D::Error> {
-        unreachable!("{name}")
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
         self,
         name: &'static str,
         visitor: V,
-    ) -> Result<V::Value, D::Error> {
-        let (schema, visitor) = (self.schema, self.with(visitor));
-        let value = self.of.deserialize_newtype_struct(name, visitor)?;
+    ) -> Result<V::Value, Error> {
+        let value = visitor.visit_newtype_struct(&mut *self)?;
         // A wrapper of the reader's own.
         if name != "ReadOnce" {
-            let of = schema.borrow().read.clone();
-            schema.borrow_mut().define(name, Type::Alias(of));
+            let of = Type::Alias(self.schema.read.clone());
+            self.schema.define(name, of);
         }
         Ok(value)
     }
@@ -308,10 +297,9 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
         name: &'static str,
         names: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, D::Error> {
-        let (told, inner) = (self.with(()), Traced { names, ..self.with(visitor) });
-        let (value, types) = told.parts(|| self.of.deserialize_struct(name, names, inner))?;
-        told.schema.borrow_mut().define(name, Type::Struct(entries(names, types)));
+    ) -> Result<V::Value, Error> {
+        let (value, types) = self.parts((names.len(), names, ""), visitor)?;
+        self.schema.define(name, Type::Struct(entries(names, types)));
         Ok(value)
     }
 
@@ -320,13 +308,13 @@ impl<'de, D: Deserializer<'de>> Deserializer<'de> for Traced<'_, D> {
         name: &'static str,
         names: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, D::Error> {
-        let (schema, inner) = (self.schema, Traced { names, ..self.with(visitor) });
-        let value = self.of.deserialize_enum(name, names, inner)?;
-        let mut schema = schema.borrow_mut();
-        let (chosen, read) = (schema.chosen.pop(), schema.read.clone());
-        let of = (0..).map(|at| if Some(at) == chosen { read.clone() } else { UNKNOWN.into() });
-        schema.define(name, Type::Choice(entries(names, of)));
+    ) -> Result<V::Value, Error> {
+        let index = self.varint() as usize;
+        self.is("");
+        let value = visitor.visit_enum(Chosen { reader: &mut *self, index, name: names[index] })?;
+        let read = self.schema.read.clone();
+        let of = (0..).map(|at| if at == index { read.clone() } else { UNKNOWN.into() });
+        self.schema.define(name, Type::Choice(entries(names, of)));
         Ok(value)
     }
 }
@@ -335,123 +323,78 @@ fn entries(names: &[&str], types: impl IntoIterator<Item = String>) -> Vec<[Stri
     names.iter().zip(types).map(|(name, of)| [(*name).to_owned(), of]).collect()
 }
 
-impl<'de, V: Visitor<'de>> Visitor<'de> for Traced<'_, V> {
-    type Value = V::Value;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.of.expecting(f)
-    }
-
-    fn visit_none<E: serde::de::Error>(self) -> Result<V::Value, E> {
-        self.is(UNKNOWN);
-        self.of.visit_none()
-    }
-
-    fn visit_some<D: Deserializer<'de>>(self, reader: D) -> Result<V::Value, D::Error> {
-        let reader = self.with(reader);
-        self.of.visit_some(reader)
-    }
-
-    fn visit_newtype_struct<D: Deserializer<'de>>(self, reader: D) -> Result<V::Value, D::Error> {
-        let reader = self.with(reader);
-        self.of.visit_newtype_struct(reader)
-    }
-
-    fn visit_u32<E: serde::de::Error>(self, index: u32) -> Result<V::Value, E> {
-        self.schema.borrow_mut().variant = index as usize;
-        self.of.visit_u32(index)
-    }
-
-    fn visit_seq<A: SeqAccess<'de>>(self, parts: A) -> Result<V::Value, A::Error> {
-        let parts = self.with(parts);
-        self.of.visit_seq(parts)
-    }
-
-    fn visit_enum<A: EnumAccess<'de>>(self, access: A) -> Result<V::Value, A::Error> {
-        let access = self.with(access);
-        self.of.visit_enum(access)
-    }
+/// What has parts, as it is read.
+struct Parts<'r, 'a> {
+    reader: &'r mut Reader<'a>,
+    left: usize,
+    names: &'static [&'static str],
+    field: &'static str,
+    types: Vec<String>,
 }
 
-impl<'de, S: DeserializeSeed<'de>> DeserializeSeed<'de> for Traced<'_, S> {
-    type Value = S::Value;
-
-    fn deserialize<D: Deserializer<'de>>(self, reader: D) -> Result<S::Value, D::Error> {
-        let reader = self.with(reader);
-        self.of.deserialize(reader)
-    }
-}
-
-impl<'de, A: SeqAccess<'de>> SeqAccess<'de> for Traced<'_, A> {
-    type Error = A::Error;
+impl<'de> SeqAccess<'de> for Parts<'_, '_> {
+    type Error = Error;
 
     fn next_element_seed<S: DeserializeSeed<'de>>(
         &mut self,
         seed: S,
-    ) -> Result<Option<S::Value>, A::Error> {
-        let at = self.schema.borrow().parts.last().map_or(0, Vec::len);
-        // Parts of a list go by the name of the list.
-        let field = self.names.get(at).copied().unwrap_or(self.field);
-        let seed = Traced { field, ..self.nameless(seed) };
-        let value = self.of.next_element_seed(seed)?;
-        if value.is_some() {
-            let mut schema = self.schema.borrow_mut();
-            let read = schema.read.clone();
-            schema.parts.last_mut().expect("what has parts").push(read);
+    ) -> Result<Option<S::Value>, Error> {
+        if self.left == 0 {
+            return Ok(None);
         }
-        Ok(value)
+        self.left -= 1;
+        // Parts of a list go by the name of the list.
+        self.reader.field = self.names.get(self.types.len()).copied().unwrap_or(self.field);
+        let value = seed.deserialize(&mut *self.reader)?;
+        self.types.push(self.reader.schema.read.clone());
+        Ok(Some(value))
     }
 
     fn size_hint(&self) -> Option<usize> {
-        self.of.size_hint()
+        Some(self.left)
     }
 }
 
-impl<'de, 'a, A: EnumAccess<'de>> EnumAccess<'de> for Traced<'a, A> {
-    type Error = A::Error;
-    type Variant = Traced<'a, A::Variant>;
+/// The variant of a choice, as it is read.
+struct Chosen<'r, 'a> {
+    reader: &'r mut Reader<'a>,
+    index: usize,
+    name: &'static str,
+}
 
-    fn variant_seed<S: DeserializeSeed<'de>>(
-        self,
-        seed: S,
-    ) -> Result<(S::Value, Self::Variant), A::Error> {
-        let (told, seed) = (self.with(()), self.nameless(seed));
-        let (value, of) = self.of.variant_seed(seed)?;
-        let mut schema = told.schema.borrow_mut();
-        let variant = schema.variant;
-        schema.chosen.push(variant);
-        schema.read = String::new();
-        Ok((value, told.with(of)))
+impl<'de> EnumAccess<'de> for Chosen<'_, '_> {
+    type Error = Error;
+    type Variant = Self;
+
+    fn variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<(S::Value, Self), Error> {
+        Ok((seed.deserialize((self.index as u32).into_deserializer())?, self))
     }
 }
 
-impl<'de, A: VariantAccess<'de>> VariantAccess<'de> for Traced<'_, A> {
-    type Error = A::Error;
+impl<'de> VariantAccess<'de> for Chosen<'_, '_> {
+    type Error = Error;
 
-    fn unit_variant(self) -> Result<(), A::Error> {
-        self.of.unit_variant()
+    fn unit_variant(self) -> Result<(), Error> {
+        Ok(())
     }
 
-    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, A::Error> {
-        let seed = self.nameless(seed);
-        self.of.newtype_variant_seed(seed)
+    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, Error> {
+        self.reader.field = "";
+        seed.deserialize(self.reader)
     }
 
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, A::Error> {
-        unreachable!("{:?}", self.names)
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, _: V) -> Result<V::Value, Error> {
+        unreachable!("{}", self.name)
     }
 
     fn struct_variant<V: Visitor<'de>>(
         self,
         names: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, A::Error> {
-        let (told, inner) = (self.with(()), Traced { names, ..self.with(visitor) });
-        let (value, types) = told.parts(|| self.of.struct_variant(names, inner))?;
+    ) -> Result<V::Value, Error> {
+        let (value, types) = self.reader.parts((names.len(), names, ""), visitor)?;
         // What a variant has goes by the variant's name.
-        let mut schema = told.schema.borrow_mut();
-        let name = told.names[*schema.chosen.last().expect("a variant")];
-        schema.define(name, Type::Struct(entries(names, types)));
+        self.reader.schema.define(self.name, Type::Struct(entries(names, types)));
         Ok(value)
     }
 }
