@@ -37,6 +37,7 @@ pub(crate) mod noise;
 pub(crate) mod observation_log;
 pub(crate) mod predictions;
 pub(crate) mod reliability;
+mod rows;
 pub(crate) mod sample;
 pub(crate) mod tolerance;
 pub(crate) mod true_labels;

@@ -2,6 +2,7 @@
 
 use crate::belief::field::layout::{DIRECTIONS, DISCS, Layout, OFFSETS, Region, RegionShape};
 use crate::belief::field::recent::Recent;
+use crate::belief::rows::Rows;
 use crate::belief::sample::Label;
 use crate::geometry::hull::Extent;
 use crate::geometry::lattice::Site;
@@ -13,18 +14,14 @@ pub(crate) const SHUT: i8 = i8::MIN;
 /// The square of how near a heart is to a place where the robot sought it, as a share of how near the robot came.
 const SAME: f32 = 0.01;
 
-/// Sums of labels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sums<const N: usize>(pub(crate) [i8; N]);
-
 /// What a field has to remember: 1.6 kB.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FieldMemory {
-    /// Of each disc.
-    pub(crate) discs: Sums<DISCS>,
-    /// Of each direction, the labels between one half-plane's border and the next one's.
-    pub(crate) bins: Sums<{ DIRECTIONS * (OFFSETS + 1) }>,
+    /// Of each disc, the sum of its labels.
+    pub(crate) discs: Rows<i8, 1, DISCS>,
+    /// Of each direction, the sums of the labels between one half-plane's border and the next one's.
+    pub(crate) bins: Rows<i8, DIRECTIONS, { OFFSETS + 1 }>,
     /// Of each direction, how many half-planes from either end are not sought: the robot cannot come to them.
     pub(crate) shut: [[u8; 2]; DIRECTIONS],
     /// Of all labels.
@@ -35,8 +32,8 @@ pub struct FieldMemory {
 impl FieldMemory {
     /// No label.
     pub(crate) const NONE: Self = Self {
-        discs: Sums([0; DISCS]),
-        bins: Sums([0; DIRECTIONS * (OFFSETS + 1)]),
+        discs: Rows([[0; DISCS]]),
+        bins: Rows([[0; OFFSETS + 1]; DIRECTIONS]),
         shut: [[0; 2]; DIRECTIONS],
         total: 0,
         recent: Recent::NONE,
@@ -45,7 +42,7 @@ impl FieldMemory {
     /// Forgets all labels of an area, but for the last ones if they are `kept`.
     pub(crate) fn begin<G: Workspace>(&mut self, layout: &Layout, area: &G, kept: &Recent) {
         *self = Self::NONE;
-        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+        for (sum, (shape, _)) in self.discs.0.as_flattened_mut().iter_mut().zip(layout.discs()) {
             let site = shape.centre().and_then(|at| layout.site(at));
             *sum = if site.is_some_and(|it| area.contains(it)) { 0 } else { SHUT };
         }
@@ -65,7 +62,7 @@ impl FieldMemory {
             let [x, z] = [x - at[0], z - at[1]];
             x * x + z * z <= SAME * least * least
         };
-        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+        for (sum, (shape, _)) in self.discs.0.as_flattened_mut().iter_mut().zip(layout.discs()) {
             if let RegionShape::Disc { centre, radius } = shape
                 && radius <= least
                 && is_there(centre)
@@ -88,7 +85,7 @@ impl FieldMemory {
 
     /// Discs whose centres lie in an extent are not sought: what lies there is known.
     pub(crate) fn leave_out(&mut self, layout: &Layout, extent: Extent) {
-        for (sum, (shape, _)) in self.discs.0.iter_mut().zip(layout.discs()) {
+        for (sum, (shape, _)) in self.discs.0.as_flattened_mut().iter_mut().zip(layout.discs()) {
             let site = shape.centre().and_then(|at| layout.site(at));
             if site.is_some_and(|it| extent.holds(it)) {
                 *sum = SHUT;
@@ -106,9 +103,9 @@ impl FieldMemory {
             }
         };
         for k in layout.discs_at(at) {
-            self.discs.0.get_mut(k).into_iter().for_each(add);
+            self.discs.0.as_flattened_mut().get_mut(k).into_iter().for_each(add);
         }
-        for (k, bins) in self.bins.0.chunks_mut(OFFSETS + 1).enumerate() {
+        for (k, bins) in self.bins.0.iter_mut().enumerate() {
             bins.get_mut(layout.bin(k, at)).into_iter().for_each(add);
         }
         self.total = self.total.saturating_add(by.into());
@@ -120,49 +117,10 @@ impl FieldMemory {
 
 #[cfg(feature = "serde")]
 mod bytes {
-    use core::fmt::{Formatter, Result as Written};
-
-    use serde::de::{Error, SeqAccess, Visitor};
-    use serde::ser::SerializeTuple as _;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    use super::Sums;
     use crate::belief::field::recent::{REMEMBERED, Recent};
     use crate::belief::sample::Sample;
-
-    impl<const N: usize> Serialize for Sums<N> {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let mut tuple = serializer.serialize_tuple(N)?;
-            for sum in &self.0 {
-                tuple.serialize_element(sum)?;
-            }
-            tuple.end()
-        }
-    }
-
-    struct SumsVisitor<const N: usize>;
-
-    impl<'de, const N: usize> Visitor<'de> for SumsVisitor<N> {
-        type Value = Sums<N>;
-
-        fn expecting(&self, f: &mut Formatter<'_>) -> Written {
-            write!(f, "{N} sums")
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-            let mut sums = [0; N];
-            for (k, sum) in sums.iter_mut().enumerate() {
-                *sum = seq.next_element()?.ok_or_else(|| Error::invalid_length(k, &self))?;
-            }
-            Ok(Sums(sums))
-        }
-    }
-
-    impl<'de, const N: usize> Deserialize<'de> for Sums<N> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            deserializer.deserialize_tuple(N, SumsVisitor)
-        }
-    }
 
     type Labels = heapless::Vec<Sample, REMEMBERED, u8>;
 

@@ -196,7 +196,9 @@ impl Field {
         let share =
             if self.layout.has_discs() { self.seeking.most_likely().patches() } else { 0.0 };
         let mut known = KnownOdds::of_total(self, self.memory.total);
-        for (sum, (shape, weight)) in self.memory.discs.0.iter().zip(self.layout.discs()) {
+        for (sum, (shape, weight)) in
+            self.memory.discs.0.as_flattened().iter().zip(self.layout.discs())
+        {
             if *sum != SHUT {
                 let (is_inside, odds) = known.of(self, (*sum).into());
                 take(Region { shape, is_inside }, odds * weight * share);
@@ -204,9 +206,7 @@ impl Field {
         }
         let weight = (1.0 - share) / (DIRECTIONS * OFFSETS) as f32;
         let shut = self.memory.shut.iter();
-        for ((direction, bins), [first, last]) in
-            self.memory.bins.0.chunks(OFFSETS + 1).enumerate().zip(shut)
-        {
+        for ((direction, bins), [first, last]) in self.memory.bins.0.iter().enumerate().zip(shut) {
             let sought = usize::from(*first)..OFFSETS.saturating_sub((*last).into());
             let total = bins.iter().map(|it| i32::from(*it)).sum();
             if total != known.total {
@@ -329,7 +329,7 @@ mod tests {
         let island = KeepOut::<4>::disc([100.0, 75.0], 40.0).unwrap();
         let area = PolygonArea::<4, 1>::metres(&corners, &[island]).unwrap();
         let shut = |field: &Field| {
-            field.memory.discs.0.iter().filter(|it| **it == SHUT).count() as f32
+            field.memory.discs.0.as_flattened().iter().filter(|it| **it == SHUT).count() as f32
                 / field.layout.discs().count() as f32
         };
         let mut field = field(0.9);

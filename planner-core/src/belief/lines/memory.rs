@@ -5,19 +5,17 @@ use crate::belief::front::Learnt;
 use crate::belief::lines::grid::Lay;
 use crate::belief::lines::known::Lines;
 use crate::belief::observation_log::{FromLog, ReplayError};
+use crate::belief::rows::Rows;
 use crate::geometry::lattice::Site;
 use crate::geometry::mark::Mark;
-
-/// The masses of all cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Masses<const K: usize, const M: usize>(pub(crate) [[f32; M]; K]);
 
 /// What lines know, without what they were told. `4 K M` bytes and some 100.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct LinesMemory<const K: usize, const M: usize> {
     pub(crate) lay: Lay,
-    pub(crate) masses: Masses<K, M>,
+    /// Of all cells.
+    pub(crate) masses: Rows<f32, K, M>,
     pub(crate) nowhere: [f32; 2],
     pub(crate) learnt: Option<Learnt>,
     pub(crate) evidence: Evidence,
@@ -47,7 +45,7 @@ impl<const K: usize, const M: usize> FromLog for Lines<K, M> {
 
     fn log(&self) -> LinesMemory<K, M> {
         let Self { nowhere, learnt, evidence, heard, .. } = *self;
-        let (lay, masses) = (self.grid.lay, Masses(self.grid.mass));
+        let (lay, masses) = (self.grid.lay, Rows(self.grid.mass));
         LinesMemory { lay, masses, nowhere, learnt, evidence, heard }
     }
 
@@ -68,51 +66,6 @@ impl<const K: usize, const M: usize> FromLog for Lines<K, M> {
         (self.nowhere, self.learnt, self.evidence) = (log.nowhere, log.learnt, log.evidence);
         self.heard = log.heard;
         Ok(())
-    }
-}
-
-#[cfg(feature = "serde")]
-mod bytes {
-    use core::fmt::{Formatter, Result as Written};
-
-    use serde::de::{Error, SeqAccess, Visitor};
-    use serde::ser::SerializeTuple as _;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use super::Masses;
-
-    impl<const K: usize, const M: usize> Serialize for Masses<K, M> {
-        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-            let mut tuple = serializer.serialize_tuple(K * M)?;
-            for mass in self.0.iter().flatten() {
-                tuple.serialize_element(mass)?;
-            }
-            tuple.end()
-        }
-    }
-
-    struct MassesVisitor<const K: usize, const M: usize>;
-
-    impl<'de, const K: usize, const M: usize> Visitor<'de> for MassesVisitor<K, M> {
-        type Value = Masses<K, M>;
-
-        fn expecting(&self, f: &mut Formatter<'_>) -> Written {
-            write!(f, "{} masses", K * M)
-        }
-
-        fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Self::Value, A::Error> {
-            let mut masses = [[0.0; M]; K];
-            for (k, mass) in masses.iter_mut().flatten().enumerate() {
-                *mass = seq.next_element()?.ok_or_else(|| Error::invalid_length(k, &self))?;
-            }
-            Ok(Masses(masses))
-        }
-    }
-
-    impl<'de, const K: usize, const M: usize> Deserialize<'de> for Masses<K, M> {
-        fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-            deserializer.deserialize_tuple(K * M, MassesVisitor)
-        }
     }
 }
 
