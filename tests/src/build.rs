@@ -13,9 +13,8 @@ use std::{env, fs, io};
 /// What cargo said.
 pub fn flying() -> Result<PathBuf, String> {
     let target = scratch().with_file_name("mavlink");
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut cargo = cargo();
     cargo
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
         .args(["build", "--quiet", "--package", "host-sim", "--features", "mavlink"])
         .arg("--target-dir")
         .arg(&target)
@@ -26,6 +25,30 @@ pub fn flying() -> Result<PathBuf, String> {
         return Err(String::from_utf8_lossy(&built.stderr).into_owned());
     }
     Ok(target.join("debug").join("host-sim"))
+}
+
+/// The repository's folder.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Cargo, in the repository's folder.
+pub fn cargo() -> Command {
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.current_dir(root());
+    cargo
+}
+
+/// What a program prints.
+///
+/// # Panics
+/// With all that it said, when it fails; when it does not start.
+pub fn printed(program: &mut Command) -> String {
+    let run = program.output().unwrap_or_else(|error| panic!("{program:?}: {error}"));
+    let [said, errors] =
+        [run.stdout, run.stderr].map(|it| String::from_utf8_lossy(&it).into_owned());
+    assert!(run.status.success(), "{program:?}: {said}{errors}");
+    said
 }
 
 /// Whether a program is on `PATH`.

@@ -4,7 +4,7 @@
 #[test]
 fn each_is_run() {
     let manifest = include_str!("../../../planner-core/Cargo.toml");
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../planner-core/examples");
+    let folder = tests::build::root().join("planner-core/examples");
     let all = std::fs::read_dir(folder).expect("examples").map(|it| it.expect("a file").path());
     let missing: Vec<_> = all
         .filter(|path| path.extension().is_some_and(|it| it == "rs"))
@@ -52,7 +52,7 @@ fn the_readme_is_short() {
 /// The page tells how long each is.
 #[test]
 fn the_page_tells_their_lines() {
-    let docs = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
+    let docs = tests::build::root().join("docs");
     let rows = include_str!("../../../docs/your-robot.md").lines().filter_map(|line| {
         let (path, rest) = line.split_once("](../planner-core/")?.1.split_once(") | ")?;
         let told = rest.strip_suffix(" |")?.rsplit(" | ").next()?.parse::<usize>().ok()?;

@@ -9,10 +9,9 @@ use std::collections::HashMap;
 use std::env;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::Path;
 
 use serde_json::Value;
-use tests::build::is_long;
+use tests::build::{is_long, root};
 use tests::command;
 use tests::is_updating;
 
@@ -162,7 +161,7 @@ fn differs(was: &[String], is: &[String], fields: f64) -> Option<String> {
 
 #[test]
 fn are_what_the_commands_print() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/figures.md");
+    let path = root().join("docs/figures.md");
     let page = fs::read_to_string(&path).expect("the page");
     let (texts, mut sections) = read(&page);
     if !is_long("the figures of docs/figures.md", "figures") {

@@ -5,7 +5,6 @@
 //! `UPDATE_EXPECT=1 cargo test -p tests golden::` writes both anew.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use expect_test::expect_file;
 use host_sim::campaign::standard_field;
@@ -19,11 +18,11 @@ use host_sim::report::picture::Picture;
 use host_sim::report::text;
 use host_sim::world::noise::{Extent, NoiseModel};
 use planner_core::{Policy, Prior};
-use tests::command;
+use tests::{build, command};
 
 #[test]
 fn standard_scenarios() {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
+    let folder = build::root().join("host-sim/scenarios");
     let mut files: Vec<_> = std::fs::read_dir(&folder)
         .expect("the scenarios")
         .map(|entry| entry.expect("an entry").path())
@@ -85,7 +84,7 @@ fn hashes_of_traces_figures_and_campaigns() {
             line(&format!("figure {number}"), &figure);
         }
     }
-    let program = Path::new(env!("CARGO_MANIFEST_DIR")).join("../host-sim/scenarios");
+    let program = build::root().join("host-sim/scenarios");
     let run = |args: &str| command::told(&format!("host-sim {args}"));
     for args in [
         "campaign --fields 40 --steps 40 --format json",

@@ -56,7 +56,7 @@ fn faults(path: &Path, page: &str) -> Vec<String> {
 #[test]
 fn each_leads_somewhere() {
     let mut found = Vec::new();
-    pages(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), &mut found);
+    pages(&tests::build::root(), &mut found);
     assert!(found.len() > 50, "{} pages are too few", found.len());
     let read = |path: &PathBuf| fs::read_to_string(path).expect("a page");
     let faults: Vec<_> = found.iter().flat_map(|path| faults(path, &read(path))).collect();
@@ -65,7 +65,7 @@ fn each_leads_somewhere() {
 
 #[test]
 fn one_that_leads_nowhere_is_named() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md");
+    let path = tests::build::root().join("README.md");
     let page = "# A page, of `two`\n[a](LICENSE-MIT) [b](#a-page-of-two) [c](LICENSE-GPL)\n```\n[d](none)\n```\n[e](#none)";
     let found = faults(&path, page);
     assert!(found.len() == 2 && found[0].contains("LICENSE-GPL"), "{found:?}");

@@ -2,10 +2,9 @@
 //!
 //! The browser says how many steps are to be made, so nothing depends on time.
 
+use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::path::Path;
-use std::process::{Command, Stdio};
-use std::{env, fs};
+use std::process::Stdio;
 
 use host_sim::mission::recording::Recording;
 use host_sim::mission::scenario::{self, Overrides};
@@ -13,7 +12,7 @@ use host_sim::report::live::Live;
 use host_sim::report::page::{Chapter, Page};
 use tests::build;
 
-use crate::page::lacks_browser;
+use crate::page::{lacks_browser, node};
 
 #[test]
 fn a_line_in_a_browser() {
@@ -38,7 +37,6 @@ fn a_front_that_moves_away_in_a_browser() {
 }
 
 fn look_at(name: &str, text: &str) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     if lacks_browser("pages in a browser") {
         return;
     }
@@ -48,8 +46,8 @@ fn look_at(name: &str, text: &str) {
     let mission = scenario::parse(name, text, Overrides::default()).expect("a good file");
     let mut live = Live::open(&"127.0.0.1:0".parse().expect("an address"), name, &mission)
         .expect("a free port");
-    let mut node = Command::new("node");
-    node.current_dir(&folder).arg("live.mjs").arg(live.link()).args([&report, &place]).arg(name);
+    let mut node = node();
+    node.arg("live.mjs").arg(live.link()).args([&report, &place]).arg(name);
     let mut node = node.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("node starts");
     let mut answer = node.stdin.take().expect("a pipe");
     let mut said = BufReader::new(node.stdout.take().expect("a pipe")).lines();

@@ -4,9 +4,8 @@
 #![allow(clippy::float_cmp)] // what is said is said to the last bit
 
 use std::f64::consts::TAU;
-use std::path::Path;
+use std::fs;
 use std::process::Command;
-use std::{env, fs};
 
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::recording::Recording;
@@ -24,8 +23,8 @@ fn recordings() -> impl Iterator<Item = (String, Recording)> {
     let planners = [None, Some(Algorithm::Lookahead)];
     SCENARIOS.into_iter().flat_map(move |name| planners.map(|planner| (name, planner))).map(
         |(name, algorithm)| {
-            let file = format!("../host-sim/scenarios/{name}.toml");
-            let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+            let file = format!("host-sim/scenarios/{name}.toml");
+            let file = build::root().join(file);
             let mission = scenario::read(&file, Overrides { algorithm, ..Overrides::default() });
             let recording = mission.and_then(|mission| Recording::of(&mission));
             (format!("{name} by {algorithm:?}"), recording.expect("a sound scenario"))
@@ -71,13 +70,10 @@ fn flat_rows_have_one_shape_and_say_what_the_trace_says() {
 
 /// The lines that a script in Python prints of a mission's log.
 fn read_by(script: &str, recording: &Recording) -> Vec<Map<String, Value>> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join(script);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("mission.mcap");
     fs::write(&file, log::mcap(recording).expect("a log")).expect("a file");
-    let read = Command::new("python3").arg(script).arg(&file).output().expect("python3");
-    assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
-    records(&String::from_utf8(read.stdout).expect("UTF-8"))
+    records(&build::printed(Command::new("python3").arg(script).arg(&file)))
 }
 
 #[test]

@@ -1,20 +1,15 @@
 //! `planner-core` as it is published: whole by itself.
 
+use std::fs;
 use std::path::Path;
-use std::process::Command;
-use std::{env, fs};
+
+use tests::build;
 
 #[test]
 fn the_package_has_all_that_it_needs() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let listed = Command::new(cargo)
-        .current_dir(&root)
-        .args(["package", "--list", "--allow-dirty", "--offline", "-p", "planner-core"])
-        .output()
-        .expect("cargo starts");
-    assert!(listed.status.success(), "{}", String::from_utf8_lossy(&listed.stderr));
-    let listed = String::from_utf8(listed.stdout).expect("paths");
+    let root = build::root();
+    let list = ["package", "--list", "--allow-dirty", "--offline", "-p", "planner-core"];
+    let listed = build::printed(build::cargo().args(list));
     let has = |path: &str| listed.lines().any(|line| line == path);
     for path in
         ["README.md", "LICENSE-MIT", "LICENSE-APACHE", "src/lib.rs", "examples/own_robot.rs"]

@@ -34,7 +34,6 @@ fn a_spill_in_a_browser() {
 }
 
 fn look_at(name: &str, page: fn() -> String) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     if lacks_browser("pages in a browser") {
         return;
     }
@@ -42,13 +41,18 @@ fn look_at(name: &str, page: fn() -> String) {
     fs::create_dir_all(&place).expect("a folder");
     let file = place.join(format!("{name}.html"));
     fs::write(&file, page()).expect("a page");
-    let mut node = Command::new("node");
-    node.current_dir(&folder).arg("page.mjs").args([&file, &place]);
+    let mut node = node();
+    node.arg("page.mjs").args([&file, &place]);
     // Each width in each scheme: a long run's.
     node.args(tests::is_long().then_some("all"));
-    let run = node.output().expect("node starts");
-    let said = [run.stdout, run.stderr].concat();
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&said));
+    build::printed(&mut node);
+}
+
+/// Node, in the folder of the scripts.
+pub(crate) fn node() -> Command {
+    let mut node = Command::new("node");
+    node.current_dir("browser");
+    node
 }
 
 /// Whether something that a browser needs is not there; then a visible line says what is skipped.
@@ -61,7 +65,6 @@ pub(crate) fn lacks_browser(what: &str) -> bool {
 }
 
 fn missing() -> Option<String> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("browser");
     let chromium = env::var_os("CHROMIUM").unwrap_or(CHROMIUM.into());
     if !build::has_tool("node") {
         return Some("node is not on the path".into());
@@ -69,7 +72,7 @@ fn missing() -> Option<String> {
     if !Path::new(&chromium).exists() {
         return Some(format!("no {}", chromium.display()));
     }
-    let is_there = |package| folder.join("node_modules").join(package).is_dir();
+    let is_there = |package| Path::new("browser/node_modules").join(package).is_dir();
     let has_packages = ["axe-core", "playwright-core"].into_iter().all(is_there);
     (!has_packages).then(|| "expected npm ci in tests/browser".into())
 }

@@ -5,10 +5,9 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::sync::LazyLock;
-use std::{env, fs};
 
 use expect_test::expect_file;
 use host_sim::mission::recording::Recording;
@@ -38,8 +37,8 @@ static BUILT: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
     }
     let folder = build::scratch().join("playground");
     fs::create_dir_all(&folder).expect("a folder");
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root()).args(["run", "--quiet", "--locked", "-p", "playground", "--"]);
+    let mut cargo = build::cargo();
+    cargo.args(["run", "--quiet", "--locked", "-p", "playground", "--"]);
     let file = folder.join("playground.html");
     let run = cargo.arg("--output").arg(&file).output().expect("cargo starts");
     let said = String::from_utf8_lossy(&run.stderr);
@@ -49,10 +48,6 @@ static BUILT: LazyLock<Result<PathBuf, String>> = LazyLock::new(|| {
     assert!(run.status.success(), "{said}");
     Ok(file)
 });
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 #[test]
 fn missions_in_node_are_those_of_the_host() {
@@ -142,16 +137,15 @@ fn what_is_copied_is_flown_and_compiled() {
     for file in of_kind(&folder, "rs") {
         fs::copy(&file, programs.join(file.file_name().expect("a name"))).expect("a file");
     }
-    let core = root().canonicalize().expect("a path").join("planner-core");
+    let core = build::root().canonicalize().expect("a path").join("planner-core");
     let manifest = format!(
         "[package]\nname = \"copied\"\nedition = \"2024\"\n[workspace]\n[dependencies]\nplanner-core.path = {core:?}\n"
     );
     fs::write(folder.join("Cargo.toml"), manifest).expect("a manifest");
-    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock");
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    fs::copy(build::root().join("Cargo.lock"), folder.join("Cargo.lock")).expect("a lock");
+    let mut cargo = build::cargo();
     cargo.current_dir(&folder).args(["check", "--quiet", "--offline"]);
-    let run = cargo.env("RUSTFLAGS", "-D warnings").output().expect("cargo starts");
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    build::printed(cargo.env("RUSTFLAGS", "-D warnings"));
 }
 
 fn built(what: &str) -> Option<&'static Path> {
@@ -160,12 +154,7 @@ fn built(what: &str) -> Option<&'static Path> {
 
 /// Runs a script of `tests/browser`.
 fn node(arguments: &[&Path]) -> String {
-    let mut node = Command::new("node");
-    let run = node.current_dir(root().join("tests/browser")).args(arguments).output();
-    let run = run.expect("node starts");
-    let said = String::from_utf8_lossy(&[run.stdout, run.stderr].concat()).into_owned();
-    assert!(run.status.success(), "{said}");
-    said
+    build::printed(page::node().args(arguments))
 }
 
 /// Flies a few of the scenarios, in a long run all.

@@ -11,21 +11,18 @@
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::builder::PossibleValue;
 use clap::{Arg, Command, CommandFactory as _};
 use expect_test::expect_file;
 use host_sim::cli::arguments::Cli;
 use host_sim::mission::scenario::{self, Overrides};
+use tests::build::root;
 use tests::command;
 
 /// The most bytes of a page.
 const MOST: usize = 10 * 1024;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 /// The pages, each with its path.
 fn pages() -> Vec<(PathBuf, String)> {

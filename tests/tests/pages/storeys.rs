@@ -55,7 +55,7 @@ type Reads<'a> = BTreeMap<&'a str, BTreeSet<String>>;
 
 #[test]
 fn modules_read_downwards() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = tests::build::root();
     let page = fs::read_to_string(root.join("ARCHITECTURE.md")).expect("the page");
     for (folders, storeys, least) in [
         (&["planner-core/src"][..], PLANNER_CORE, 300),
@@ -240,7 +240,7 @@ fn a_reading_upwards_or_in_a_circle_is_named() {
 #[test]
 fn each_type_name_of_the_core_is_defined_once() {
     let mut modules = Modules::new();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../planner-core/src");
+    let root = tests::build::root().join("planner-core/src");
     read_folder(&root, "crate", &mut modules);
     let found: usize = modules.values().map(|source| type_names(source).count()).sum();
     assert!(found > 300, "{found} type names are too few");

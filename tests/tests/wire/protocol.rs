@@ -3,7 +3,7 @@
 
 use std::fmt::{Debug, Write as _};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 use expect_test::expect_file;
@@ -35,7 +35,7 @@ use tests::lakes;
 use crate::traced::{self, Schema};
 
 fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs")
+    build::root().join("docs")
 }
 
 fn page(name: &str) -> String {
@@ -602,16 +602,14 @@ fn python_reads_the_vectors_so_too() {
     }
     let mut python = Command::new("python3");
     python.args(["wire.py", "--vectors"]).current_dir(docs()).env("PYTHONDONTWRITEBYTECODE", "1");
-    let output = python.output().expect("python3 starts");
-    let [said, complaint] = [&output.stdout, &output.stderr].map(|it| String::from_utf8_lossy(it));
-    assert!(output.status.success(), "{said}{complaint}");
+    let said = build::printed(&mut python);
     assert_eq!(said, format!("{} vectors agree\n", page("protocol.vectors").lines().count()));
 }
 
 /// The seeds of the fuzz target `frames` are the contents of whole missions' vectors. `UPDATE_EXPECT` writes them.
 #[test]
 fn fuzzing_begins_from_the_vectors() {
-    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../fuzz/corpus/frames");
+    let corpus = build::root().join("fuzz/corpus/frames");
     for (name, content) in vectors().contents.iter().filter(|(name, _)| !name.contains('/')) {
         let file = corpus.join(name);
         if tests::is_updating() {

@@ -9,12 +9,12 @@ pub mod image;
 mod thumb;
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Mutex, PoisonError};
-use std::{env, fs};
 
-use tests::build::{scratch, skip};
+use tests::build::{cargo, printed, root, scratch, skip};
 
 /// The target of the chip that any run builds for.
 pub const CHIP: &str = "thumbv7em-none-eabihf";
@@ -57,9 +57,9 @@ pub fn folder(package: &str, target: &str, program: &str) -> Option<PathBuf> {
 fn build(package: &str, target: &str, program: &str) -> PathBuf {
     let directory = scratch().with_file_name("elf");
     let (workspace, profile) = if package == ALONE.0 { (ALONE.1, "release") } else { ("", "chip") };
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let mut cargo = cargo();
     cargo
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(workspace))
+        .current_dir(root().join(workspace))
         .args(["build", "--quiet", "--profile", profile, "--package", package, "--target", target])
         .arg("--target-dir")
         .arg(&directory)
@@ -77,9 +77,7 @@ fn build(package: &str, target: &str, program: &str) -> PathBuf {
     {
         cargo.env_remove(host);
     }
-    let built = cargo.output().expect("cargo starts");
-    let errors = String::from_utf8_lossy(&built.stderr);
-    assert!(built.status.success(), "{package} fails to build for {target}:\n{errors}");
+    printed(&mut cargo);
     directory.join(target).join(profile)
 }
 

@@ -17,7 +17,7 @@ use planner_core::{
     PredictiveBelief, Reliability, Sample, Site, SlopeWithin, StopReason, Tolerance, Track,
     Unicycle, VersionSpace,
 };
-use tests::build::{has_tool, scratch, skip};
+use tests::build::{has_tool, printed, scratch, skip};
 use tests::is_updating;
 
 fn folder() -> PathBuf {
@@ -356,25 +356,21 @@ fn awake_in(mode: &str) -> String {
 fn program(library: &Path, source: &Path) -> PathBuf {
     let name = source.file_name().expect("a name");
     let program = scratch().join(name).with_extension("program");
-    let built = Command::new("cc")
+    let mut compiler = Command::new("cc");
+    compiler
         .args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"])
         .arg(folder().join("include"))
         .arg(source)
         .arg(library.join("libplanner_c.a"))
         .args(["-lm", "-lpthread", "-ldl", "-o"])
-        .arg(&program)
-        .output()
-        .expect("cc starts");
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+        .arg(&program);
+    printed(&mut compiler);
     program
 }
 
 /// What a program prints, which ends well.
 fn said(program: &Path, argument: &str) -> String {
-    let run = Command::new(program).arg(argument).output().expect("it starts");
-    let (said, errors) = (run.stdout, String::from_utf8_lossy(&run.stderr).into_owned());
-    assert!(run.status.success(), "{} {argument}: {errors}", program.display());
-    String::from_utf8(said).expect("text")
+    printed(Command::new(program).arg(argument))
 }
 
 #[test]
@@ -416,14 +412,12 @@ fn the_header_compiles_as_c99_and_as_cpp11() {
             skip("the C header", &format!("there is no compiler `{compiler}`"));
             continue;
         }
-        let built = Command::new(compiler)
+        let mut compiler = Command::new(compiler);
+        compiler
             .arg(format!("-std={standard}"))
             .args(["-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-x", language])
-            .arg(folder().join("include/planner.h"))
-            .output()
-            .expect("it starts");
-        let errors = String::from_utf8_lossy(&built.stderr).into_owned();
-        assert!(built.status.success(), "{standard}: {errors}");
+            .arg(folder().join("include/planner.h"));
+        printed(&mut compiler);
     }
 }
 
@@ -462,15 +456,14 @@ fn calls_take_the_stack_that_the_page_says() {
     );
     let [place, elf] = ["c.x", "c.elf"].map(|it| scratch().join(it));
     fs::write(&place, script).expect("writes the script");
-    let linked = Command::new(linker())
+    let mut linker = Command::new(linker());
+    linker
         .args(["-flavor", "gnu", "--gc-sections", "--undefined=planner_has_ended", "-T"])
         .arg(&place)
         .arg(library.join("libplanner_c.a"))
         .arg("-o")
-        .arg(&elf)
-        .output()
-        .expect("the linker starts");
-    assert!(linked.status.success(), "{}", String::from_utf8_lossy(&linked.stderr));
+        .arg(&elf);
+    printed(&mut linker);
     let image = Image::read(&fs::read(elf).expect("an ELF"));
     let graph = Graph::of(&image, &[]).expect("calls that are known");
     let page = fs::read_to_string(folder().join("../../docs/c.md")).expect("the page");
@@ -490,9 +483,7 @@ fn calls_take_the_stack_that_the_page_says() {
 
 /// The linker that comes with the compiler.
 fn linker() -> PathBuf {
-    let sysroot =
-        Command::new("rustc").args(["--print", "sysroot"]).output().expect("rustc starts");
-    let sysroot = String::from_utf8(sysroot.stdout).expect("text");
+    let sysroot = printed(Command::new("rustc").args(["--print", "sysroot"]));
     Path::new(sysroot.trim()).join("lib/rustlib").join(host()).join("bin/rust-lld")
 }
 
@@ -503,8 +494,7 @@ fn here(name: &str) -> PathBuf {
 
 /// The target that these tests run on.
 fn host() -> &'static str {
-    let version = Command::new("rustc").arg("-vV").output().expect("rustc starts");
-    let version = String::from_utf8(version.stdout).expect("text");
+    let version = printed(Command::new("rustc").arg("-vV"));
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).expect("a host");
     Box::leak(host.to_owned().into_boxed_str())
 }
