@@ -549,6 +549,13 @@ fn the_schema_states_the_limits() {
         ("stretch", "100 to 10,000,000", taken::<FrontStretch, _>([100_u32, 99])),
         ("stretch", "100 to 10,000,000", taken::<FrontStretch, _>([10_000_000_u32, 10_000_001])),
         ("Line", "slope at most 1", taken::<LocalLine, _>([line(1, -1.0), line(1, -1.01)])),
+        ("Line", "slope at most 1", taken::<LocalLine, _>([line(1, 1.0), line(1, f32::NAN)])),
+        ("Line", "not 0", taken::<LocalLine, _>([line(0, 0.0), ((0, 0), [0, 0], [0.0, 0.0])])),
+        (
+            "Line",
+            "intercept in metres",
+            taken::<LocalLine, _>([f32::MAX, f32::INFINITY].map(|it| ((0, 0), [1, 0], [0.0, it]))),
+        ),
         (
             "Line",
             "size below 2^30",
