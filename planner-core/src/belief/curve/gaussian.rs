@@ -302,36 +302,33 @@ impl Gait {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::{Matrix4, Vector4};
+
     use super::*;
     use crate::draws::Draws;
 
-    type Full = [[f64; 4]; 4];
+    type Moments = (Vector4<f64>, Matrix4<f64>);
 
     /// Means and covariance of offset, turn, curvature and one place.
-    fn full(it: &Gaussian, place: usize) -> ([f64; 4], Full) {
+    fn full(it: &Gaussian, place: usize) -> Moments {
         let f = f64::from;
         let k = 2 + place;
-        let slope = [1.0, f(it.gain[0]), f(it.gain[1]), f(it.gain[k])];
+        let slope = Vector4::new(1.0, f(it.gain[0]), f(it.gain[1]), f(it.gain[k]));
         let [pt, pb, pp] = it.behind[place].map(f);
         let [tt, tb, bb] = it.rest.map(f);
         let rest = [[0.0; 4], [0.0, tt, tb, pt], [0.0, tb, bb, pb], [0.0, pt, pb, pp]];
-        let of = |i: usize, j: usize| slope[i] * slope[j] * f(it.variance) + rest[i][j];
-        let all = core::array::from_fn(|i| core::array::from_fn(|j| of(i, j)));
-        ([f(it.mean), f(it.means[0]), f(it.means[1]), f(it.means[k])], all)
+        let mean = Vector4::new(f(it.mean), f(it.means[0]), f(it.means[1]), f(it.means[k]));
+        (mean, slope * slope.transpose() * f(it.variance) + Matrix4::from(rest))
     }
 
-    fn near(a: ([f64; 4], Full), b: ([f64; 4], Full), what: &str) {
+    fn near(a: Moments, b: Moments, what: &str) {
         for i in 0..4 {
-            assert!(
-                (a.0[i] - b.0[i]).abs() < 1e-4 * (1.0 + b.0[i].abs()),
-                "{what} mean {i}: {a:?} {b:?}"
-            );
+            let off = (a.0[i] - b.0[i]).abs();
+            assert!(off < 1e-4 * (1.0 + b.0[i].abs()), "{what} mean {i}: {a:?} {b:?}");
             for j in 0..4 {
-                let scale = (b.1[i][i] * b.1[j][j]).sqrt();
-                assert!(
-                    (a.1[i][j] - b.1[i][j]).abs() < 2e-4 * scale,
-                    "{what} {i} {j}: {a:?} {b:?}"
-                );
+                let off = (a.1[(i, j)] - b.1[(i, j)]).abs();
+                let scale = (b.1[(i, i)] * b.1[(j, j)]).sqrt();
+                assert!(off < 2e-4 * scale, "{what} {i} {j}: {a:?} {b:?}");
             }
         }
     }
@@ -354,16 +351,6 @@ mod tests {
 
     const GAIT: Gait = Gait { noise: [0.1, 0.2, 0.05], fades: 0.3, prior: 0.0 };
 
-    fn times(f: &Full, p: &Full) -> Full {
-        let of = |i: usize, j: usize| {
-            (0..4)
-                .flat_map(|k| (0..4).map(move |l| (k, l)))
-                .map(|(k, l)| f[i][k] * p[k][l] * f[j][l])
-                .sum()
-        };
-        core::array::from_fn(|i| core::array::from_fn(|j| of(i, j)))
-    }
-
     #[test]
     fn it_does_what_a_matrix_does() {
         let mut draws = Draws::new(7);
@@ -375,64 +362,41 @@ mod tests {
                 let (mean, p) = full(&it, place);
                 // Ahead.
                 let (half, kept) = (0.5 * way * way, 1.0 - 0.3 * way.abs());
-                let f = [
-                    [1.0, way, half, 0.0],
-                    [0.0, 1.0, way, 0.0],
-                    [0.0, 0.0, kept, 0.0],
+                let f = Matrix4::from([
+                    [1.0, 0.0, 0.0, 0.0],
+                    [way, 1.0, 0.0, 0.0],
+                    [half, way, kept, 0.0],
                     [0.0, 0.0, 0.0, 1.0],
-                ];
-                let mut q = times(&f, &p);
+                ]);
                 let [yy, yt, yb, tt, tb, bb] = GAIT.grown(way as f32).map(f64::from);
-                for (i, j, it) in [
-                    (0, 0, yy),
-                    (0, 1, yt),
-                    (1, 0, yt),
-                    (0, 2, yb),
-                    (2, 0, yb),
-                    (1, 1, tt),
-                    (1, 2, tb),
-                    (2, 1, tb),
-                    (2, 2, bb),
-                ] {
-                    q[i][j] += it;
-                }
-                let moved = [
-                    mean[0] + way * mean[1] + half * mean[2],
-                    mean[1] + way * mean[2],
-                    kept * (mean[2] + 0.25) - 0.25,
-                    mean[3],
-                ];
+                let grown = [[yy, yt, yb, 0.0], [yt, tt, tb, 0.0], [yb, tb, bb, 0.0], [0.0; 4]];
+                let q = f * p * f.transpose() + Matrix4::from(grown);
+                let bent = -0.25 * (1.0 - kept);
+                let moved = f * mean + Vector4::new(0.0, 0.0, bent, 0.0);
                 let mut went = it;
                 went.advance(way as f32, 0.25, &GAIT);
                 near(full(&went, place), (moved, q), "advance");
                 let seen = it.ahead(way as f32, &GAIT);
-                assert!((f64::from(seen.variance) - q[0][0]).abs() < 1e-4 * q[0][0]);
+                assert!((f64::from(seen.variance) - q[(0, 0)]).abs() < 1e-4 * q[(0, 0)]);
                 assert!((f64::from(seen.mean) - moved[0]).abs() < 1e-4);
                 // A label.
-                let (g, b) = (0.3, 0.5 / p[0][0]);
+                let (g, b) = (0.3, 0.5 / p[(0, 0)]);
                 let mut heard = Gaussian::NONE;
                 heard.join(&it, it.told(g as f32, b as f32));
-                let means = core::array::from_fn(|i| mean[i] + p[i][0] * g);
-                let all = core::array::from_fn(|i| {
-                    core::array::from_fn(|j| p[i][j] - b * p[i][0] * p[0][j])
-                });
+                let means = mean + p.column(0) * g;
+                let all = p - p.column(0) * p.row(0) * b;
                 near(full(&heard, place), (means, all), "hear");
                 let mut widened = it;
                 widened.widen(0.4);
                 let mut wide = p;
-                wide[0][0] += f64::from(0.4_f32);
+                wide[(0, 0)] += f64::from(0.4_f32);
                 near(full(&widened, place), (mean, wide), "widen");
                 // Both together.
                 let (its, o) = full(&other, place);
                 let share = f64::from(other.weight) / f64::from(it.weight + other.weight);
-                let means = core::array::from_fn(|i| mean[i] * (1.0 - share) + its[i] * share);
-                let all = core::array::from_fn(|i| {
-                    core::array::from_fn(|j| {
-                        p[i][j] * (1.0 - share)
-                            + o[i][j] * share
-                            + share * (1.0 - share) * (mean[i] - its[i]) * (mean[j] - its[j])
-                    })
-                });
+                let (means, apart) = (mean * (1.0 - share) + its * share, mean - its);
+                let spread = apart * apart.transpose() * (1.0 - share) * share;
+                let all = p * (1.0 - share) + o * share + spread;
                 let mut joined = it;
                 joined.join(&other, other.offset());
                 near(full(&joined, place), (means, all), "join");
