@@ -259,27 +259,22 @@ impl<D: Dynamics, const N: usize, G: Workspace> Persist for Cfc<D, N, G> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Point2;
-
     use super::*;
     use crate::belief::sample::Sample;
+    use crate::geometry::heading::Heading;
     use crate::motion::unicycle::Unicycle;
     use crate::search::recovery::Recovery;
 
-    fn at(x: f64, z: f64) -> Site {
-        Site::try_from(Point2::new(x, z)).unwrap()
-    }
-
     fn pose(x: f64, z: f64) -> Pose {
-        Pose { site: at(x, z), heading: crate::geometry::heading::Heading(0) }
+        Pose::at([x, z], Heading(0)).unwrap()
     }
 
     /// The oracle's corners of a square around z = 5, and no more room than asked for.
     fn planner<const N: usize>() -> Cfc<Unicycle, N> {
-        let corners = [(0.0, 0.0), (0.0, 10.0), (10.0, 10.0), (10.0, 0.0)];
-        let sample = |(x, z)| {
+        let corners = [[0.0, 0.0], [0.0, 10.0], [10.0, 10.0], [10.0, 0.0]];
+        let sample = |[x, z]: [f64; 2]| {
             let label = if z > 5.0 { Label::Positive } else { Label::Negative };
-            Sample { site: at(x, z), label }
+            Sample::at([x, z], label).unwrap()
         };
         let area = Area::metres([0.0, 0.0], [10.0, 10.0]).unwrap();
         let space = VersionSpace::new(&corners.map(sample)).unwrap();
@@ -327,7 +322,7 @@ mod tests {
         }
         // And refused when it is false.
         let refused = planner.observe(pose(5.0, 9.0), Some(Reading::Boundary));
-        let contrary = Sample { site: at(5.0, 9.0), label: Label::Negative };
+        let contrary = Sample::at([5.0, 9.0], Label::Negative).unwrap();
         assert_eq!(refused, Err(ObservationError::Contradiction(contrary)));
     }
 
@@ -336,7 +331,7 @@ mod tests {
         let mut planner = planner::<16>();
         see(&mut planner, 4.0, 3.0, Label::Negative);
         let before = (planner.phase(), planner.past, planner.space.samples().len());
-        let wrong = Sample { site: at(4.0, 1.0), label: Label::Positive };
+        let wrong = Sample::at([4.0, 1.0], Label::Positive).unwrap();
         let refused = planner.observe(pose(4.0, 1.0), Some(Label::Positive.into()));
         assert_eq!(refused, Err(ObservationError::Contradiction(wrong)));
         assert_eq!((planner.phase(), planner.past, planner.space.samples().len()), before);
@@ -374,7 +369,7 @@ mod tests {
         let area = planner.area;
         for n in 0..400_u32 {
             let (sin, cos) = libm::sincos(f64::from(n));
-            let heading = crate::geometry::heading::Heading(n.wrapping_mul(2_654_435_761));
+            let heading = Heading(n.wrapping_mul(2_654_435_761));
             let off = 7.1 + f64::from(n) / 10.0;
             let mut pose = Pose { heading, ..pose(5.0 + off * cos, 5.0 + off * sin) };
             // Two turns, and drives of two metres by an eighth of which it comes nearer at least.
@@ -415,7 +410,7 @@ mod tests {
         ] {
             see(&mut planner, x, z, label);
         }
-        let quarter = crate::geometry::heading::Heading(1 << 30);
+        let quarter = Heading(1 << 30);
         // Facing away from the strip, one metre above it.
         let away = Pose { heading: quarter, ..pose(5.0, 6.1) };
         let Plan::Move(motion) = planner.plan(away) else { panic!("there is a turn") };

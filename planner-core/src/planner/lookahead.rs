@@ -525,10 +525,6 @@ mod tests {
     use crate::geometry::heading::Heading;
     use crate::motion::unicycle::Unicycle;
 
-    fn at(x: f64, z: f64) -> Site {
-        Site::try_from(Point2::new(x, z)).unwrap()
-    }
-
     fn area() -> Area {
         Area::metres([0.0, 0.0], [20.0, 20.0]).unwrap()
     }
@@ -542,7 +538,7 @@ mod tests {
     impl TiltedField {
         fn site(self, along: f64, off: f64) -> Site {
             let (sin, cos) = libm::sincos(self.angle);
-            at(10.0 + along * cos - off * sin, 10.0 + along * sin + off * cos)
+            Site::metres([10.0 + along * cos - off * sin, 10.0 + along * sin + off * cos]).unwrap()
         }
 
         fn label(self, site: Site) -> Label {
@@ -707,7 +703,7 @@ mod tests {
     fn it_stops_when_it_should() {
         for field in fields() {
             let start = field.start();
-            let outside = Pose { site: at(-1.0, 10.0), ..start };
+            let outside = Pose::at([-1.0, 10.0], start.heading).unwrap();
             let arc = |deg: f64| Goal::slope_within_degrees(deg).unwrap();
             let stops = |plan, reason| assert_eq!(plan, Plan::Stop(reason));
             let mut full = field.true_labels::<5>();

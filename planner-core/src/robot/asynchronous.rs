@@ -96,17 +96,13 @@ mod tests {
 
     const STEPS: usize = 24;
 
-    fn at(x: f64, z: f64) -> Site {
-        Site::try_from(Point2::new(x, z)).unwrap()
-    }
-
     fn label(site: Site) -> Label {
         let at = Point2::<f64>::from(site);
         if at.y > 0.41 * at.x + 3.5 { Label::Positive } else { Label::Negative }
     }
 
     fn start() -> Pose {
-        Pose { site: at(2.0, 1.0), heading: Heading(0) }
+        Pose::at([2.0, 1.0], Heading(0)).unwrap()
     }
 
     fn area() -> Area {
@@ -114,7 +110,8 @@ mod tests {
     }
 
     fn known() -> VersionSpace<32> {
-        let given = [at(2.0, 1.0), at(2.0, 8.0), at(18.0, 16.0), at(18.0, 5.0)];
+        let given = [[2.0, 1.0], [2.0, 8.0], [18.0, 16.0], [18.0, 5.0]];
+        let given = given.map(|place| Site::metres(place).unwrap());
         VersionSpace::new(&given.map(|site| Sample { site, label: label(site) })).unwrap()
     }
 
@@ -323,17 +320,15 @@ mod tests {
 
     #[test]
     fn a_reading_on_the_way_that_is_refused_is_reported_after_the_motion() {
-        let there = at;
         let [at, free] = [Cell::new(start()), Cell::new(start())];
         let (stuck, senses) = (Cell::new(None), |_| Label::Positive);
         let robot = |at| Robot { at, stuck: &stuck, senses };
         let vehicle = |at| Vehicle { drive: Reporting(robot(at)), sensor: robot(at) };
         // Below the line all is certain, as it was there.
-        let sample = |(x, z), label| Sample { site: there(x, z), label };
         let given = [
-            sample((0.0, 9.0), Label::Negative),
-            sample((20.0, 9.0), Label::Negative),
-            sample((10.0, 20.0), Label::Positive),
+            Sample::at([0.0, 9.0], Label::Negative).unwrap(),
+            Sample::at([20.0, 9.0], Label::Negative).unwrap(),
+            Sample::at([10.0, 20.0], Label::Positive).unwrap(),
         ];
         let planner = || {
             let space = VersionSpace::<32>::new(&given).unwrap();

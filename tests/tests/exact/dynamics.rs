@@ -10,7 +10,7 @@ use planner_core::{
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use tests::cases;
+use tests::{cases, vehicles};
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Debug;
@@ -332,10 +332,7 @@ fn each_broken_promise_is_named() {
     ] {
         assert_eq!(check(&Faulty(Unicycle::fine(), breaks)), broken, "{breaks:?}");
     }
-    let (speeds, speed_step_mm) = (21, 100);
-    let (radius_mm, shortest_mm, turn_step_urad) = (3_000, 500, 50_000);
-    let shape = CarShape { radius_mm, shortest_mm, turn_step_urad, speeds, speed_step_mm };
-    let car = Car::new(shape).expect("a car");
+    let car = vehicles::car(50_000, 3_000, 2_000);
     for (breaks, broken) in [
         (Breaks::Nothing, Ok(())),
         (Breaks::MoreWhenSlower, Err(Error::Speeds(9))),
@@ -611,14 +608,7 @@ fn who_is_safe_can_go_round() {
     let mut counts = Vec::new();
     let mut rng = ChaCha8Rng::seed_from_u64(tests::seed(6));
     for radius_mm in [300, 1_000, 3_000, 5_000] {
-        let car = Car::new(CarShape {
-            radius_mm,
-            shortest_mm: 500,
-            turn_step_urad: 10_000,
-            speeds: 21,
-            speed_step_mm: 100,
-        });
-        counts.push(compare(&car.expect("a car"), area, &mut rng));
+        counts.push(compare(&vehicles::car(10_000, radius_mm, 2_000), area, &mut rng));
     }
     for step_mm in [100, 800] {
         let steps = Unicycle::new(10_000, 20f64.to_radians(), 3, step_mm).expect("a grid");

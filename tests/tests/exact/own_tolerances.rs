@@ -7,7 +7,6 @@ use host_sim::campaign::standard_field;
 use host_sim::mission::algorithm::Algorithm;
 use host_sim::mission::definition::Mission;
 use host_sim::mission::read_out::AnyPlanner;
-use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::{Point2, Vector2};
 use planner_core::error::{GivenError, ObservationError};
 use planner_core::estimate::area;
@@ -16,7 +15,7 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use tests::cases;
-use tests::ensemble::{self, median};
+use tests::ensemble::{self, median, noisy};
 
 /// The most that a position may be off, metres.
 const MOST: f64 = 0.8;
@@ -195,12 +194,6 @@ fn given_samples_may_err() {
     assert_eq!(space.samples(), mission.given.samples());
 }
 
-/// A mission with labels that may be wrong, for planners that take these in.
-fn doubtful(seed: u64, number: u64, algorithm: Algorithm, p: f64) -> Mission {
-    let noise = Some(NoiseModel { p, extent: Extent::OutsideBalls(0.0) });
-    Mission { noise, ..mission(seed, number, algorithm) }
-}
-
 /// The median of the bits that missions learn whose error grows with the way.
 fn bits(mission: impl Fn(u64) -> Mission + Sync, tells: impl Fn(f64) -> f64 + Sync) -> f64 {
     // A dead reckoning: from 2 cm to the most.
@@ -223,7 +216,7 @@ fn own_tolerances_tell_more_than_the_most() {
     ] {
         let mission = |number| {
             let mission = mission(52, number, algorithm);
-            if is_true { mission } else { doubtful(52, number, algorithm, 0.95) }
+            if is_true { mission } else { noisy(mission, 0.95, 0.0) }
         };
         let [own, most] = [bits(mission, |err| err), bits(mission, |_| MOST)];
         println!("{algorithm:?}: {own:.2} bits with own tolerances, {most:.2} with the most");
@@ -238,8 +231,8 @@ fn more_than_was_configured_is_refused_and_changes_nothing() {
     for mission in [
         mission(53, 3, Algorithm::Cfc),
         mission(53, 3, Algorithm::Lookahead),
-        doubtful(53, 3, Algorithm::Lookahead, 0.9),
-        doubtful(53, 3, Algorithm::Scc, 0.9),
+        noisy(mission(53, 3, Algorithm::Lookahead), 0.9, 0.0),
+        noisy(mission(53, 3, Algorithm::Scc), 0.9, 0.0),
     ] {
         let (mut planner, start) = (mission.planner(), mission.start);
         let Plan::Move(motion) = planner.plan(start) else { panic!("no motion") };

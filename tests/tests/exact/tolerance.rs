@@ -7,14 +7,13 @@ use host_sim::mission::read_out::LEVEL;
 use host_sim::mission::results::Ending;
 use host_sim::mission::scenario::{self, Overrides};
 use host_sim::world::errors::{CUT, Errors};
-use host_sim::world::noise::{Extent, NoiseModel};
 use nalgebra::Point2;
 use planner_core::{
     Belief as _, Label, Line, Noise, PosteriorView, Prior, Reading, Reliability, Sample, Site,
     StopReason, Tolerance, Workspace as _,
 };
 use tests::cases;
-use tests::ensemble::{self, expect, mean, median, percent};
+use tests::ensemble::{self, expect, mean, median, noisy, percent};
 use tests::twins::probit::{Probit, Told};
 
 /// A mission in a standard field with a robot that errs, and a planner that is told by how much.
@@ -90,13 +89,6 @@ fn baselines_come_back() {
 /// Labels that are true with this probability.
 const P: f64 = 0.9;
 
-/// As `erring`, with labels that may be wrong.
-fn doubtful(number: u64, algorithm: Algorithm, errors: Errors) -> Mission {
-    let mut mission = erring(number, algorithm, errors);
-    mission.noise = Some(NoiseModel { p: P, extent: Extent::OutsideBalls(0.0) });
-    mission
-}
-
 /// Credible sets hold the truth as often as they state, to two points and a half, and three deviations of so many
 /// missions. Hard steps in the place of the likelihood hold it 9 to 13 points less often. A label is one sample.
 #[test]
@@ -105,7 +97,8 @@ fn credible_sets_cover_what_they_state() {
     for algorithm in [Algorithm::Scc, Algorithm::Lookahead] {
         for position in [0.01, 0.05, 0.3] {
             let each = |number| {
-                let mission = doubtful(number, algorithm, Errors { position, ..Errors::default() });
+                let errors = Errors { position, ..Errors::default() };
+                let mission = noisy(erring(number, algorithm, errors), P, 0.0);
                 let mut labels = 0;
                 let flown = mission.fly(|step, belief| {
                     labels += usize::from(matches!(step.reading, Some(Reading::Side(_))));
@@ -139,8 +132,8 @@ fn weights_are_those_of_the_likelihood() {
     let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0);
     for number in 0..cases(6, 200) {
         let position = [0.05, 0.3][number as usize % 2];
-        let mission =
-            doubtful(number, Algorithm::Lookahead, Errors { position, ..Errors::default() });
+        let errors = Errors { position, ..Errors::default() };
+        let mission = noisy(erring(number, Algorithm::Lookahead, errors), P, 0.0);
         let flown = mission.fly(|_, _| {}).expect("doubtful labels are never refused");
         let table = flown.belief.hypotheses().expect("doubtful labels");
         let given: Vec<_> = table.given().iter().map(told).collect();

@@ -410,29 +410,24 @@ fn mean([a, b, c]: [[f32; 2]; 3]) -> [f32; 2] {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Point2;
-
     use super::*;
-    use crate::belief::sample::Sample;
+    use crate::belief::sample::{Label, Sample};
     use crate::belief::true_labels::VersionSpace;
-
-    fn at(x: f64, z: f64) -> Site {
-        Site::try_from(Point2::new(x, z)).unwrap()
-    }
 
     #[test]
     fn shares_are_those_of_the_version_space() {
-        let samples =
-            [(2.0, 1.0, -1), (2.0, 8.0, 1), (18.0, 16.0, 1), (18.0, 5.0, -1)].map(|(x, z, y)| {
-                Sample {
-                    site: at(x, z),
-                    label: if y > 0 { Label::Positive } else { Label::Negative },
-                }
-            });
+        let samples = [
+            ([2.0, 1.0], Label::Negative),
+            ([2.0, 8.0], Label::Positive),
+            ([18.0, 16.0], Label::Positive),
+            ([18.0, 5.0], Label::Negative),
+        ];
+        let samples = samples.map(|(place, label)| Sample::at(place, label).unwrap());
         let space = VersionSpace::<16>::new(&samples).unwrap();
-        let picture = DualPolygon::of(space.lines(), at(2.0, 1.0));
+        let picture = DualPolygon::of(space.lines(), samples[0].site);
         let (mut sum, mut most, mut count) = (0.0, 0.0_f64, 0);
-        for place in (0..1_600).map(|k| at(f64::from(k / 40) / 2.0, f64::from(k % 40) / 2.0)) {
+        for k in 0..1_600 {
+            let place = Site::metres([k / 40, k % 40].map(|it| f64::from(it) / 2.0)).unwrap();
             let (got, is) = (picture.share_above(place).clamp(0.0, 1.0), space.chance(place));
             let off = (f64::from(got) - is).abs();
             (sum, most, count) = (sum + off, most.max(off), count + 1);
