@@ -79,12 +79,10 @@ fn the_planner_alone_is_small_and_finds_a_line() {
     if built("the planner alone as a module").is_none() {
         return;
     }
-    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(root()).args(["build", "--quiet", "--locked", "-p", "playground"]);
-    cargo.args(["--example", "alone", "--profile", "page", "--target", TARGET]);
-    let run = cargo.args(["--message-format", "json"]).output().expect("cargo starts");
-    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
-    let said = String::from_utf8_lossy(&run.stdout);
+    let mut cargo = build::cargo();
+    cargo.args(["build", "--quiet", "--locked", "-p", "playground", "--example", "alone"]);
+    cargo.args(["--profile", "page", "--target", TARGET, "--message-format", "json"]);
+    let said = build::printed(&mut cargo);
     let module = said.split('"').rfind(|it| it.ends_with("alone.wasm")).expect("a module");
     println!("{}", node(&["alone.mjs".as_ref(), module.as_ref()]));
 }
