@@ -103,7 +103,7 @@ async function byMouse() {
     const before = await toml(page);
     const front = await after(page, () => drag(page, way));
     check((await toml(page)) !== before, `${kind}: the stroke draws nothing`);
-    check(front.refused === '' && front.said.includes('In truth it lies 0.'), `${kind}: it is not found: ${front.said}${front.refused}`);
+    check(front.refused === '' && front.said.includes('In truth it was 0.'), `${kind}: it is not found: ${front.said}${front.refused}`);
     check(/^The robot found the boundary(, but for \d+ m of it,)? with \d+ labels and \d+ motions\. In truth/.test(front.said), `${kind}: ${front.said}`);
     await page.click('#last');
     await looks(page, `${kind} 1280`);
@@ -134,7 +134,7 @@ async function byMouse() {
   await looks(page, 'lake 1280');
   const grid = `ncols 40\nnrows 32\nxllcorner 0\nyllcorner 0\ncellsize 2.5\n${Array.from({ length: 32 }, (_, row) => Array.from({ length: 40 }, (_, column) => 20 - Math.hypot(2.5 * column - 60, 40 - 2.5 * row)).join(' ')).join('\n')}`;
   const raster = await after(page, () => page.setInputFiles('#file', { name: 'Hill.ASC', mimeType: 'text/plain', buffer: Buffer.from(grid) }));
-  check(raster.refused === '' && raster.said.includes('In truth it lies') && (await toml(page)).includes('raster = "truth.asc", threshold = 0'), `a raster: ${raster.said}${raster.refused}`);
+  check(raster.refused === '' && raster.said.includes('In truth it was') && (await toml(page)).includes('raster = "truth.asc", threshold = 0'), `a raster: ${raster.said}${raster.refused}`);
   const png = await page.evaluate(() => {
     const sheet = Object.assign(document.createElement('canvas'), { width: 50, height: 40 });
     const own = sheet.getContext('2d');
@@ -144,7 +144,7 @@ async function byMouse() {
     return sheet.toDataURL('image/png').split(',')[1];
   });
   const image = await after(page, () => page.setInputFiles('#file', { name: 'image.png', mimeType: 'image/png', buffer: Buffer.from(png, 'base64') }));
-  check(image.refused === '' && image.said.includes('In truth it lies') && (await toml(page)).includes('threshold = 128'), `an image: ${image.said}${image.refused}`);
+  check(image.refused === '' && image.said.includes('In truth it was') && (await toml(page)).includes('threshold = 128'), `an image: ${image.said}${image.refused}`);
   const large = await after(page, () => page.selectOption('[name=size]', '800 x 500'));
   check(large.refused === '' && large.said.startsWith('The robot found the boundary'), `an image in a larger field: ${large.said}${large.refused}`);
   await after(page, () => page.selectOption('[name=size]', '100 x 80'));
@@ -182,8 +182,14 @@ async function byTouch() {
   };
   await after(page, () => page.tap('#kinds >> text=Circle'));
   const circle = await after(page, () => stroke([[0.5, 0.5], [0.6, 0.5], [0.7, 0.5]]));
-  check(circle.refused === '' && circle.said.includes('In truth it lies 0.'), `a circle by finger: ${circle.said}${circle.refused}`);
+  check(circle.refused === '' && circle.said.includes('In truth it was 0.'), `a circle by finger: ${circle.said}${circle.refused}`);
   check(/circle = \[(49\.9|50)/.test(await toml(page)), `another circle than was drawn: ${await toml(page)}`);
+  // Who wanted to scroll takes it back.
+  const drawn = await toml(page);
+  const scrolled = await after(page, () => stroke([[0.3, 0.8], [0.3, 0.5], [0.31, 0.3]]));
+  check(scrolled.note === 'The boundary is drawn anew.' && (await toml(page)) !== drawn, `a finger draws: ${scrolled.note}`);
+  await after(page, () => page.tap('#undo'));
+  check((await toml(page)) === drawn && !(await page.isVisible('#undo')), 'a stroke is not taken back');
   await page.waitForTimeout(300);
   check(await isSeen(page, '.map > svg'), 'the robot plays below the screen');
   await page.tap('#first');
@@ -264,13 +270,16 @@ async function asStranger() {
   // What was set stays, or it is said.
   await choose('planner', 'scc');
   const bend = await turn('Bend');
-  check(bend.note === 'Changed: the planner is Track, as this boundary is no straight line.', `Algorithm 2 and a bend: ${bend.note}`);
+  check(bend.note === 'Changed: the planner is Track, as this boundary is no straight line; the field is 100 x 80 m; no label is known.', `Algorithm 2 and a bend: ${bend.note}`);
   await choose('size', '50 x 50');
   await after(page, () => page.check('[name=moves]'));
   await after(page, () => page.check('[name=told]'));
   await turn('Circle');
   const kept = Object.fromEntries(await Promise.all(['p', 'vehicle', 'size', 'moves', 'told'].map(async (it) => [it, await value(it)])));
   check(JSON.stringify(kept) === '{"p":"0.8","vehicle":"boat","size":"50 x 50","moves":true,"told":true}', `a circle leaves ${JSON.stringify(kept)}`);
+  const straight = await choose('planner', 'cfc');
+  check(straight.note === 'This planner finds straight lines alone. Track follows this boundary.', `Algorithm 1 and a circle: ${straight.note}`);
+  await choose('planner', 'track');
   const coast = await turn('Random coast');
   check(coast.note.includes('no label is known') && (await value('moves')) && (await page.isVisible('#untold')), `a coast: ${coast.note}`);
   const square = (size) => JSON.stringify({ type: 'Polygon', coordinates: [[[7, 46], [7 + size, 46], [7 + size, 46 + size], [7, 46 + size], [7, 46]]] });
@@ -289,11 +298,17 @@ async function asStranger() {
   check((await isSeen(page, '#refused')) && (await page.textContent('#said')) === result, 'an error is out of sight, or in place of the result');
   for (const seed of ['1e99', '-7', '2.5']) {
     await type('seed', seed);
+    check((await page.inputValue('[name=seed]')) === '1', `the seed ${seed} stays in the form`);
     check((await page.textContent('#refused')).startsWith(`Random seed: found ${seed}, expected a whole number from 0 to 999999`), `the seed ${seed}: ${await page.textContent('#refused')}`);
   }
   await page.fill('#text', ' ');
   await page.click('#run-text');
   check((await page.textContent('#refused')) === 'The text is empty.', `an empty text: ${await page.textContent('#refused')}`);
+  // Keys in the text are the text's, not the player's.
+  await page.fill('#text', 'steps = ');
+  await page.press('#text', 'End');
+  for (const key of ['"', 'a', ' ', 'b', 'ArrowLeft', 'x', '"']) await page.press('#text', key);
+  check((await page.inputValue('#text')) === 'steps = "a x"b', `typed into the text: ${await page.inputValue('#text')}`);
   await page.fill('#text', 'steps = "many"');
   const many = await after(page, () => page.click('#run-text'));
   check(many.refused !== '' && (await isSeen(page, '#refused')) && (await page.isVisible('#before')) && many.said.startsWith('The run before: '), `a text that cannot be flown: ${many.said}`);

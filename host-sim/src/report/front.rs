@@ -80,8 +80,12 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
     if has_gaps(record) {
         let MapRecord { pieces, gaps, .. } = record;
         let _ = match pieces {
-            1 => writeln!(text, "Between its ends {gaps:.0} m are not mapped."),
-            _ => writeln!(text, "It has {pieces} pieces: {gaps:.0} m between them are not mapped."),
+            1 => writeln!(text, "Between its ends {:.0} m are not mapped.", gaps.ceil()),
+            _ => writeln!(
+                text,
+                "It has {pieces} pieces: {:.0} m between them are not mapped.",
+                gaps.ceil()
+            ),
         };
     }
     text.extend(half_width.map(within));
@@ -89,7 +93,8 @@ pub(crate) fn map(record: &MapRecord, unit: &str) -> String {
         let percent = 100.0 * covered;
         let _ = writeln!(
             text,
-            "In truth it lies {median:.2} m off (median), 95 % within {most:.2} m; the stated widths hold for {percent:.0} %."
+            "In truth it was {median:.2} m off when it was mapped (median), 95 % within {most:.2} m; the stated widths hold \
+             for {percent:.0} %."
         );
     }
     text

@@ -22,10 +22,14 @@ function editor(svg, { made, changed, done, seen }) {
     return [...own, { key: 'start', at: start, name: 'Where the robot starts' }];
   };
 
+  /** The nearest place of the field. */
+  const within = ([x, z]) => {
+    const { left, bottom, width, height } = ground(made());
+    return [Math.min(left + width, Math.max(left, x)), Math.min(bottom + height, Math.max(bottom, z))].map(tidy);
+  };
+
   const moved = (key, at) => {
     const old = made();
-    const { left, bottom, width, height } = ground(old);
-    const within = ([x, z]) => [Math.min(left + width, Math.max(left, x)), Math.min(bottom + height, Math.max(bottom, z))].map(tidy);
     if (key === 'start') return changed({ ...old, start: within(at) }, key);
     const points = [...old.points];
     points[Number(key)] = within(at);
@@ -43,9 +47,10 @@ function editor(svg, { made, changed, done, seen }) {
   };
 
   /** What a stroke over the field draws. */
-  const drawn = (way) => {
+  const drawn = (all) => {
     const old = made();
     const { width, height } = ground(old);
+    const way = all.map(within);
     const [first, last] = [way[0], way.at(-1)];
     const far = Math.max(...way.map(([x, z]) => Math.hypot(x - first[0], z - first[1])));
     if (far < 0.05 * Math.max(width, height)) return;
@@ -74,13 +79,13 @@ function editor(svg, { made, changed, done, seen }) {
     if (drag?.id !== event.pointerId) return;
     if (drag.key !== null) return moved(drag.key, place(event));
     drag.way.push(place(event));
-    drawn([...drag.way]);
+    drawn(drag.way);
   });
   const lifted = (event) => {
     if (drag?.id !== event.pointerId) return;
-    const isOther = made() !== drag.before;
+    const { key, before } = drag;
     drag = null;
-    if (isOther) done(true);
+    if (made() !== before) done(true, key === null && event.pointerType === 'touch' ? before : null);
   };
   svg.addEventListener('pointerup', lifted);
   svg.addEventListener('pointercancel', lifted);

@@ -100,16 +100,18 @@ function tellOutcome(before) {
   part('before').hidden = true;
 }
 
-/** Says in the bar what was done. */
-function note(words) {
+/** Says in the bar what was done; a state from `before` can be brought back. */
+function note(words, before = null) {
   part('note').textContent = words;
   part('refused').textContent = '';
   part('close').hidden = words === '';
+  part('undo').hidden = before === null;
+  part('undo').onclick = () => take(before);
 }
 
 /** Says in the bar why something is not done. */
 function refuse(why) {
-  part('note').textContent = '';
+  note('');
   part('refused').textContent = why;
   part('close').hidden = false;
 }
@@ -181,7 +183,6 @@ function change(next, changed = []) {
   form.threshold.value = String(made.raster?.threshold ?? 0);
   form.size.disabled = made.map !== null;
   form.moves.checked = made.moves;
-  for (const name of ['seed', 'threshold']) form[name].removeAttribute('aria-invalid');
   acts.again.disabled = !isRandom(made);
   part('sure').hidden = isRandom(made);
   part('text').value = toml(made);
@@ -229,14 +230,15 @@ form.addEventListener('change', ({ target }) => {
   if (name === 'isArea' || type === 'file' || name === '') return;
   if (type === 'number' && (value === '' || !target.validity.valid)) {
     const [what, expected] = NUMBERS[name];
-    target.setAttribute('aria-invalid', 'true');
-    return refuse(`${what}: found ${value || 'none'}, expected ${expected}. It stays ${made.raster && name === 'threshold' ? made.raster.threshold : made.seed}.`);
+    target.value = String(made.raster && name === 'threshold' ? made.raster.threshold : made.seed);
+    return refuse(`${what}: found ${value || 'none'}, expected ${expected}. It stays ${target.value}.`);
   }
   if (name === 'threshold') return take({ ...made, text: null, raster: { ...made.raster, threshold: Number(value) } });
   set.add(name);
   const next = { ...made, text: null, [name]: type === 'checkbox' ? isChecked : type === 'number' ? Number(value) : value };
   const { state, changed } = allowed(name === 'size' ? { ...resized(made, value), text: null } : next, name);
   take(state, { changed });
+  if (name === 'planner' && isForLines(state)) note('This planner finds straight lines alone. Track follows this boundary.');
 });
 form.addEventListener('submit', (event) => event.preventDefault());
 
@@ -280,7 +282,11 @@ async function takeFile(file) {
     refuse(`${file.name}: ${error.message}`);
   }
 }
-part('file').addEventListener('change', ({ target }) => takeFile(target.files[0]));
+part('file').addEventListener('change', async ({ target }) => {
+  await takeFile(target.files[0]);
+  // The bar says what was wrong, and the drawing shows what was right. Its name would stay with another drawing.
+  target.value = '';
+});
 document.addEventListener('dragover', (event) => event.preventDefault());
 document.addEventListener('drop', (event) => {
   event.preventDefault();
@@ -327,8 +333,13 @@ const field = editor(part('field'), {
   changed: (next, key) => {
     if (key === 'start') set.add(key);
     change({ ...next, text: null });
+    keep();
   },
-  done: (isHand) => fly(isHand),
+  // A finger that wanted to scroll has drawn, too.
+  done: (isHand, before) => {
+    if (before) note('The boundary is drawn anew.', before);
+    fly(isHand);
+  },
   seen: () => boundary,
 });
 // A word on what was done before is over when a hand or a key does something else.

@@ -43,6 +43,20 @@ function resized(state, size) {
   return { ...state, size, raster, points: state.points.map(scaled), start: scaled(state.start) };
 }
 
+/** Whether its planner finds straight lines alone, and its boundary is none. */
+function isForLines(state) {
+  return OF_LINES.includes(state.planner) && (state.kind !== 'line' || isHidden(state));
+}
+
+/** What the bar says of what another boundary brings with it. */
+const BROUGHT = {
+  planner: (it) => `the planner is ${called(PLANNERS, it)}`,
+  vehicle: (it) => `the vehicle is a ${called(VEHICLES, it)}`,
+  p: (it) => `the sensor is ${called(SENSORS, it)}`,
+  size: (it) => `the field is ${it} m`,
+  told: (it) => (it ? 'four labels are known' : 'no label is known'),
+};
+
 /** A state that the simulator can fly, and what had to change for it: names and words. The user set `last` last. */
 function allowed(state, last) {
   const changed = [];
@@ -50,7 +64,7 @@ function allowed(state, last) {
   if (state.moves && (last === 'moves' || last === 'kind') && planner !== 'track') {
     planner = 'track';
     changed.push(['planner', 'the planner is Track, which follows a boundary that moves']);
-  } else if (last === 'kind' && OF_LINES.includes(planner) && (state.kind !== 'line' || isHidden(state))) {
+  } else if (last === 'kind' && isForLines(state)) {
     planner = 'track';
     changed.push(['planner', 'the planner is Track, as this boundary is no straight line']);
   }
@@ -70,7 +84,7 @@ function allowed(state, last) {
   return { state: { ...state, planner, vehicle }, changed };
 }
 
-/** Another boundary. It keeps what the user has `set`, and returns what could not stay: names and words. */
+/** Another boundary. It keeps what the user has `set`, and returns what else changed: names and words. */
 function turned(old, next, set) {
   const [from, to] = [ground(old), ground(next)];
   const values = ['planner', 'vehicle', 'p', 'told', 'moves'].filter((it) => set.has(it)).map((it) => [it, old[it]]);
@@ -79,7 +93,10 @@ function turned(old, next, set) {
   const { state, changed } = allowed({ ...next, ...Object.fromEntries(values), ...staying }, 'kind');
   if (next.map !== null) changed.push(['start', 'the robot starts in the water'], ['size', 'the field is that of the file']);
   if (old.told && !isHidden(old) && isHidden(state)) changed.push(['told', 'no label is known, as only the simulator knows these sides']);
-  return { state, changed: changed.filter(([name]) => set.has(name)) };
+  for (const [name, words] of Object.entries(BROUGHT)) {
+    if (old[name] !== state[name] && !changed.some(([it]) => it === name)) changed.push([name, words(state[name])]);
+  }
+  return { state, changed };
 }
 
 /** Whether another seed changes the mission. */

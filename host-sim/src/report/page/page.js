@@ -260,7 +260,7 @@ const KEYS = {
 };
 
 addEventListener('keydown', (event) => {
-  const isTaken = event.altKey || event.ctrlKey || event.metaKey || event.target.closest('input, select, .scroll');
+  const isTaken = event.altKey || event.ctrlKey || event.metaKey || event.target.closest('input, select, textarea, .scroll');
   const isPressed = event.key === ' ' && event.target.closest('button');
   if (isTaken || isPressed || !KEYS[event.key]) return;
   event.preventDefault();
