@@ -148,7 +148,7 @@ function legend(caption, flight) {
   if (flight.scenes.some((it) => it.front)) {
     const moves = flight.boundary.some((it) => it.stroke.class === 'past-truth');
     item(`the front as it ${moves ? 'was when it was' : 'is'} mapped`, stroke('estimate'));
-    item('it lies here with a probability of 90 %', box('front'));
+    item(`it ${moves ? 'lay' : 'lies'} here with a probability of 90 %`, box('front'));
   }
   if (!flight.follows) item(flight.estimate, stroke('estimate'));
   item('path, and the last motion', (svg) => { add(svg, 'path', { class: 'path', d: 'M1 9H12' }); add(svg, 'path', { class: 'leg', d: 'M12 9H25' }); });
