@@ -2,8 +2,8 @@
 //!
 //! `pilot` decides: it takes messages and the time, and returns messages. It knows no socket and no clock. A
 //! [`Link`](link::Link) carries the messages: a `socket` to a real vehicle, the `ideal` vehicle of a dry run, or a
-//! test's own. `orders` has the messages that autopilots accept in guided mode, and `autopilot` the autopilots that are
-//! known.
+//! test's own. `control` joins both to a body, and `by_hand` takes labels while an operator drives. `orders` has the
+//! messages that autopilots accept in guided mode, and `autopilot` the autopilots that are known.
 
 pub mod autopilot;
 mod by_hand;
