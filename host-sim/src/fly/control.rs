@@ -132,7 +132,7 @@ impl<L: Link> Control<L> {
             let read = mission.given.samples().len() + mission.read_before.len() + 1;
             let room = Room::of(mission.is_noisy(), &mission.asking, mission.audits);
             check_steps("steps", mission.steps, read, room)?;
-            let after = mission.clone().after(&[(site, label.into())]);
+            let after = mission.clone().having_read(&[(site, label.into())]);
             *mission = after.map_err(|(_, why)| anyhow!(refusal(&why)))?;
             anyhow::Ok(mission.read_before.len())
         };

@@ -98,7 +98,10 @@ impl Mission {
     ///
     /// # Errors
     /// The number of a reading that contradicts what is known or finds no room, and why.
-    pub fn after(mut self, read: &[(Site, Reading)]) -> Result<Self, (usize, ObservationError)> {
+    pub fn having_read(
+        mut self,
+        read: &[(Site, Reading)],
+    ) -> Result<Self, (usize, ObservationError)> {
         let mut planner = self.planner();
         for (k, &(site, reading)) in read.iter().enumerate() {
             let taken = planner.observe(Pose { site, ..self.start }, Some(reading));

@@ -41,7 +41,7 @@ impl Session {
     /// # Errors
     /// Names the sample that contradicts what is known.
     pub fn new(mission: Mission, samples: &[(Site, Reading)]) -> Result<Self> {
-        let mission = mission.after(samples);
+        let mission = mission.having_read(samples);
         let mission = mission.map_err(|(k, why)| anyhow!("samples[{k}]: {}", refusal(&why)))?;
         let (planner, pose) = (mission.planner(), mission.start);
         let recorder = Recorder::new(mission.clone());

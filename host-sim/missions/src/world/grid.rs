@@ -94,7 +94,9 @@ impl Grid {
             }
         }
         if !is_met {
-            bail!("one of the ground of the area, in the coordinates of the area or of truth.crs");
+            bail!(
+                "one of the ground of the area, in the coordinates that it names, of the area or of truth.crs"
+            );
         }
         Ok(Self { corner: min, cell: [side; 2], columns, values })
     }

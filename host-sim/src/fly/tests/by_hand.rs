@@ -118,8 +118,8 @@ const READ: [(f32, f32, i8); 6] = [
     (10.0, -20.0, -1),
 ];
 
-/// One a place. The mission goes on with them as one that was told of them, whatever it is: true labels or doubtful ones, a line
-/// or a front, from nothing or with points of an oracle.
+/// One a place. The mission goes on with them as one that was told of them, whatever its labels, its boundary and its
+/// oracle are.
 #[test]
 fn labels_by_hand_are_a_missions_first() {
     let oracle = "oracle = [{ x = -30, z = -30, label = -1 }, { x = 30, z = -30, label = -1 }, { x = 0, z = 30, label = 1 }]\n";
@@ -137,7 +137,8 @@ fn labels_by_hand_are_a_missions_first() {
         assert_eq!(flown.failure(), None, "{more}");
         assert_eq!(samples(&flown), READ, "{more}");
         let Ok(flight) = &flown.flight else { unreachable!() };
-        let told = mission.after(&flight.recording.mission.read_before).expect("labels are true");
+        let told =
+            mission.having_read(&flight.recording.mission.read_before).expect("labels are true");
         let expected = Recording::of(&told).expect("labels are true").results;
         assert_eq!(flown.trace(), trace::lines(&expected), "{more}");
         assert!(expected.steps.len() > 3, "{more}");
